@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "reader/epc_table.hpp"
 #include "reader/read_plan.hpp"
 #include "reader/tag_read.hpp"
 
@@ -22,10 +25,12 @@ enum class ShareRule : std::uint8_t {
   split,        // equal shares
 };
 
-// Counts EPCs never counted before in this mission, per antenna and window (the stigmergic weights).
-// Reads may come in any order. Allocates only when the number of known EPCs outgrows `expected_tags`.
+// Counts EPCs never counted before in this mission, per antenna and window (the stigmergic weights, RFID-SOAN
+// step 1). The weights do not depend on the order in which the reads of a window arrive: who was first is
+// decided by TagRead::heard. Allocates only when the number of known EPCs outgrows `expected_tags`.
 class NewTagCounter {
  public:
+  // ports: of a validated read plan (1..32 of them, distinct).
   NewTagCounter(std::span<const ReadPort> ports, ShareRule rule, std::size_t expected_tags);
 
   // Reads of ports that are not in the plan are ignored and counted in strangers().
@@ -36,19 +41,46 @@ class NewTagCounter {
   std::span<const PortWeight> close_window();
 
   // Takes the last closed window back: no decision came of it, so its tags stay new and carry over, with the
-  // antenna that heard them first, into the window now open.
+  // antenna that heard them first, into the window now open. Reads that came since then still count towards
+  // who was first. A second call changes nothing: only one window can be taken back.
   void reopen();
 
-  [[nodiscard]] std::uint32_t new_tags() const;  // in the last closed window
-  [[nodiscard]] std::size_t counted() const;     // in the mission so far, all windows
-  [[nodiscard]] std::uint64_t strangers() const;
+  // In the last closed window; 0 before the first and after reopen().
+  [[nodiscard]] std::uint32_t new_tags() const { return new_tags_; }
+  // In the mission so far, all closed windows not taken back.
+  [[nodiscard]] std::size_t counted() const { return counted_; }
+  // Reads of ports that are not in the plan.
+  [[nodiscard]] std::uint64_t strangers() const { return strangers_; }
 
   // An EPC known before the mission (resumed inventory): never new.
   void mark_known(const Epc& epc);
 
-  // Left public part ends here; the representation is the implementation's business.
  private:
-  struct Impl;
+  struct Sighting {
+    hal::Instant first_heard;
+    std::uint32_t heard_by = 0;    // bit i: planned port i
+    std::uint8_t first_index = 0;  // planned port that heard it first
+    bool known = false;            // was in the inventory before the mission
+  };
+
+  void credit(const Sighting& sighting);
+  void share_out();
+
+  static constexpr std::size_t kMaxPorts = 32;
+  static constexpr std::uint8_t kNotPlanned = 0xFF;
+
+  ShareRule rule_;
+  std::array<std::uint8_t, 256> index_of_port_{};
+  std::vector<PortWeight> weights_;
+  std::vector<std::uint32_t> shared_by_;  // [port index * (ports + 1) + k]: new tags shared by k antennas
+  // In order of first arrival, so every window is a range:
+  // counted for good | last closed window | window now open
+  EpcTable<Sighting> sightings_;
+  std::size_t closed_begin_ = 0;
+  std::size_t open_begin_ = 0;
+  std::uint32_t new_tags_ = 0;
+  std::size_t counted_ = 0;
+  std::uint64_t strangers_ = 0;
 };
 
 }  // namespace forager::reader
