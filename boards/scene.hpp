@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "boards/config_node.hpp"
+#include "flight/obstacle_guard.hpp"
+#include "hal/error.hpp"
+#include "hal/pose.hpp"
+#include "hal/time.hpp"
+#include "reader/new_tag_counter.hpp"
+#include "reader/read_plan.hpp"
+
+namespace forager::boards {
+
+// The vehicle of a scene. World frame REP-103, metres and radians.
+struct SceneVehicle {
+  hal::Pose start;                  // on the floor
+  double altitude_m = 1.8;          // flown height
+  std::vector<double> altitudes_m;  // several heights, tried in turn; empty: altitude_m only
+  double body_radius_m = 0.6;
+  double max_speed_m_s = 1.0;
+  double max_acceleration_m_s2 = 1.5;
+  double max_climb_m_s = 0.7;
+  double max_yaw_rate_rad_s = 1.0;
+  double battery_s = 1500.0;   // flight time of a full battery
+  double battery_start = 1.0;  // 0..1
+};
+
+struct SceneCamera {
+  int columns = 80;
+  int rows = 60;
+  double horizontal_fov_rad = 1.518;
+  double vertical_fov_rad = 1.012;
+  double rate_hz = 10.0;
+  double min_m = 0.15;
+  double max_m = 7.0;
+  double noise = 0.0;  // depth noise: standard deviation is noise * depth^2, 1/m
+};
+
+struct SceneLocalisation {
+  double rate_hz = 30.0;
+  double noise_m = 0.003;
+  double noise_rad = 0.002;
+};
+
+enum class PolicyKind : std::uint8_t { stigmergy, hover, dead_reckoning, stop_and_rotate, random_walk };
+[[nodiscard]] std::string_view to_string(PolicyKind kind);  // "stigmergy", "static", "dead_reckoning", ...
+// Errors: invalid_argument listing the names there are.
+[[nodiscard]] hal::Result<PolicyKind> policy_from(std::string_view name);
+
+struct SceneMission {
+  PolicyKind policy = PolicyKind::stigmergy;
+  hal::Duration window{};
+  double step_m = 1.0;
+  double speed_m_s = 0.5;
+  double arrival_m = 0.2;
+  double arrival_yaw_rad = 0.26;
+  int tries = 5;
+  std::optional<hal::Duration> time_limit;  // from take-off
+  double battery_reserve = 0.2;             // 0..1
+  reader::ShareRule share = reader::ShareRule::first_heard;
+  double significance = 0.0;  // k of |V| > k sqrt(sum w); 0: off
+  bool winner_takes_all = false;
+  bool memory = false;
+  double memory_half_life_s = 60.0;
+  std::vector<hal::Vec3> waypoints;  // dead reckoning; z is filled in with the altitude
+  std::uint32_t rotate_above = 10;   // stop-and-rotate: new tags in a window that start a rotation
+  std::uint32_t rotate_below = 3;    // and that end it
+};
+
+struct SceneLinks {
+  hal::Duration reader_timeout{};     // REST exchange
+  hal::Duration stream_timeout{};     // silence on the event stream
+  hal::Duration reader_allowance{};   // reader lost for longer: land
+  hal::Duration autopilot_timeout{};  // heartbeat silence
+  hal::Duration pose_timeout{};       // localisation silence in flight: land
+  hal::Duration start_timeout{};      // everything ready and airborne by then
+  hal::Duration deadman{};            // our own heartbeats stop when the loop stalls this long
+};
+
+struct SceneShelf {
+  hal::Vec3 min;
+  hal::Vec3 max;
+};
+struct SceneGroup {
+  std::uint32_t tags = 0;
+  double spread_xy_m = 0.5;  // tags scatter +- this around the centre
+  double spread_z_m = 0.5;   // and 0 .. this above it
+  bool wanted = true;
+  std::vector<hal::Vec3> centres;
+};
+struct SceneRadio {
+  double r0_m = 2.75;
+  double t0_s = 1.0;
+  double beam_horizontal_rad = 1.2217;
+  double beam_vertical_rad = 1.2217;
+  std::string pattern = "cosine";  // cosine, gaussian
+  double pattern_exponent = 0.5;   // u = R / (R0 D0^e): 0.5 the paper, 1 the published plugin
+  double spread_db = 2.0;
+  double fade_db = 2.0;
+  double max_range_m = 8.0;
+  double occlusion_db = 0.0;
+};
+struct SceneWorld {
+  std::vector<SceneShelf> shelves;
+  std::vector<SceneGroup> groups;
+  SceneRadio radio;
+};
+
+// A vehicle, its devices, a task and, off-target, a world.
+struct Scene {
+  std::string file;
+  std::string name;
+  std::string title;
+  SceneVehicle vehicle;
+  SceneCamera camera;
+  SceneLocalisation localisation;
+  reader::ReadPlan read_plan;
+  flight::GuardConfig guard;
+  SceneMission mission;
+  SceneLinks links;
+  SceneWorld world;
+};
+
+// Reads and checks a scene file (and the files it lies on). Errors: those of load_config; invalid_argument
+// for an unknown key, a wrong type, a value out of range, a port without bearing, a policy without what it
+// needs.
+[[nodiscard]] hal::Result<Scene> load_scene(const std::string& path);
+// The same from a parsed tree; for tests and fuzzers.
+[[nodiscard]] hal::Result<Scene> read_scene(const ConfigNode& root, const std::string& file);
+
+}  // namespace forager::boards
