@@ -1,0 +1,77 @@
+#include "boards/board.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "boards/config_reader.hpp"
+
+namespace forager::boards {
+namespace {
+
+constexpr Range kPort{1, 65535};
+
+Endpoint read_endpoint(ConfigReader& table, std::string_view key, const Endpoint& fallback) {
+  if (!table.has(key)) return fallback;
+  auto endpoint = endpoint_from(table.text(key, ""));
+  if (endpoint) return *endpoint;
+  table.complain(key, endpoint.error().detail, endpoint.error().mend);
+  return fallback;
+}
+
+void read_reader(ConfigReader table, Board& board) {
+  board.reader_host = table.text("host", board.reader_host);
+  board.reader_rest_port =
+      static_cast<std::uint16_t>(table.integer("rest_port", board.reader_rest_port, kPort));
+  board.reader_stream_port =
+      static_cast<std::uint16_t>(table.integer("stream_port", board.reader_stream_port, kPort));
+  board.reader_device_id = table.text("device_id", "");
+  board.reader_user = table.text("user", "");
+  board.reader_password_env = table.text("password_env", "");
+  if (board.reader_user.empty() != board.reader_password_env.empty())
+    table.complain("user", "and password_env go together",
+                   "Give both, or neither for a reader without login.");
+}
+
+}  // namespace
+
+hal::Result<Endpoint> endpoint_from(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  unsigned port = 0;
+  const char* end = text.data() + text.size();
+  const bool parsed = colon != std::string::npos && colon > 0 &&
+                      std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
+                      port <= 65535;
+  if (!parsed)
+    return hal::fail(hal::ErrorCode::invalid_argument, "address", text,
+                     fmt::format("\"{}\" is not HOST:PORT", text), "Write for example 192.168.1.50:14550.");
+  return Endpoint{text.substr(0, colon), static_cast<std::uint16_t>(port)};
+}
+
+std::string to_string(const Endpoint& endpoint) { return fmt::format("{}:{}", endpoint.host, endpoint.port); }
+
+Board sim_board() { return {}; }
+
+hal::Result<Board> load_board(const std::string& name_or_path) {
+  if (name_or_path == "sim") return sim_board();
+  auto root = load_config(name_or_path);
+  if (!root) return hal::fail(std::move(root).error());
+  ConfigIssue issue;
+  ConfigReader top(&*root, "", issue);
+  Board board;
+  ConfigReader about = top.table("board");
+  about.require("name", "a short name, such as name = \"drone-2\"");
+  board.name = about.text("name", "");
+  board.kind =
+      about.choice("kind", "socket", {"sim", "socket"}) == "sim" ? BoardKind::sim : BoardKind::socket;
+  read_reader(top.table("reader"), board);
+  ConfigReader autopilot = top.table("autopilot");
+  board.autopilot = read_endpoint(autopilot, "address", board.autopilot);
+  ConfigReader world = top.table("world");
+  board.truth = read_endpoint(world, "truth", board.truth);
+  check_unused(*root, issue);
+  if (issue) return hal::fail(std::move(*issue));
+  return board;
+}
+
+}  // namespace forager::boards

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "boards/config_node.hpp"
+#include "hal/error.hpp"
+#include "hal/time.hpp"
+
+namespace forager::boards {
+
+// A host and a port.
+struct Endpoint {
+  std::string host;
+  std::uint16_t port = 0;
+};
+// "host:port". Errors: invalid_argument.
+[[nodiscard]] hal::Result<Endpoint> endpoint_from(const std::string& text);
+[[nodiscard]] std::string to_string(const Endpoint& endpoint);
+
+enum class BoardKind : std::uint8_t {
+  sim,     // every device emulated in this process, on its own time line
+  socket,  // reader and autopilot over sockets; camera and localisation computed from a truth feed
+};
+
+// Which backend each device has. Only this file knows addresses; a scene says what the devices must do.
+struct Board {
+  std::string name = "sim";
+  BoardKind kind = BoardKind::sim;
+
+  std::string reader_host = "127.0.0.1";
+  std::uint16_t reader_rest_port = 3161;
+  std::uint16_t reader_stream_port = 3177;
+  std::string reader_device_id;     // empty: the only device the reader has
+  std::string reader_user;          // empty: no login
+  std::string reader_password_env;  // environment variable that holds the password
+
+  Endpoint autopilot{"127.0.0.1", 14550};
+  Endpoint truth{"127.0.0.1", 14571};  // where the emulated autopilot's truth feed is received
+};
+
+// The board with everything in process.
+[[nodiscard]] Board sim_board();
+// `sim`, or a file. Errors: those of load_config; invalid_argument for unknown keys and impossible values.
+[[nodiscard]] hal::Result<Board> load_board(const std::string& name_or_path);
+
+}  // namespace forager::boards
