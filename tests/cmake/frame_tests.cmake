@@ -1,0 +1,8 @@
+# Tests of the frame itself: real backends, the include rule, the installed package.
+forager_tests(hal/linux LINKS forager_hal_linux forager_hal)
+
+find_program(FORAGER_PYTHON NAMES python3 REQUIRED)
+add_test(NAME include_rule
+         COMMAND ${FORAGER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/include_rule.py ${PROJECT_SOURCE_DIR})
+add_test(NAME include_rule_catches_violations
+         COMMAND ${FORAGER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/include_rule.py --self-test)
