@@ -10,9 +10,11 @@ namespace forager::reader {
 
 // One read event of one tag by one antenna port.
 struct TagRead {
+  static constexpr std::int16_t kNoRssi = -32768;  // weaker than any report, so "strongest" stays right
+
   Epc epc;
-  std::uint8_t port = 0;            // reader port, 1-based
-  std::int16_t rssi_dbm = 0;        // as reported
+  std::uint8_t port = 0;            // reader port, 1-based; 0 if not reported
+  std::int16_t rssi_dbm = 0;        // as reported; kNoRssi if not reported
   std::optional<double> phase_deg;  // backscatter phase, if reported
   std::uint32_t frequency_khz = 0;  // carrier, 0 if not reported
   std::uint32_t read_count = 1;     // reads folded into this event
