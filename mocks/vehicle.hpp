@@ -68,6 +68,10 @@ class Vehicle : public TrueBody {
   void command(const VehicleCommand& command) { command_ = command; }
   // Speed limits may change in flight (DO_CHANGE_SPEED), physics may not.
   void limit_speed(double horizontal_m_s) { parameters_.max_speed_m_s = horizontal_m_s; }
+  void limit_climb(double up_m_s, double down_m_s) {
+    parameters_.max_climb_m_s = up_m_s;
+    parameters_.max_descent_m_s = down_m_s;
+  }
   // One step of length dt that ends at `now` (which only stamps the journal).
   void update(hal::Duration dt, hal::Instant now);
 
