@@ -44,8 +44,9 @@ class HttpClient {
   }
 
   // nullopt while the answer is outstanding. Errors, each ending the request: timeout, refused (nobody
-  // listens), disconnected, authentication (401 after the challenge was answered), protocol, io,
-  // invalid_state (none in flight). Every other HTTP status is a response, not an error.
+  // listens), not_present (the name does not resolve), disconnected, authentication (401 after the challenge
+  // was answered, or without credentials to answer it), protocol, io, invalid_state (none in flight). Every
+  // other HTTP status is a response, not an error.
   [[nodiscard]] Result<std::optional<HttpResponse>> poll(Instant now) { return do_poll(now); }
 
   // Gives up the request in flight, if any.

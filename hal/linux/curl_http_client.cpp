@@ -47,7 +47,7 @@ class CurlHttpClient final : public HttpClient {
     easy_.reset(curl_easy_init());
     if (easy_) configure();
   }
-  ~CurlHttpClient() override { finish(); }
+  ~CurlHttpClient() override { end_transfer(); }
   CurlHttpClient(const CurlHttpClient&) = delete;
   CurlHttpClient& operator=(const CurlHttpClient&) = delete;
 
@@ -80,9 +80,16 @@ class CurlHttpClient final : public HttpClient {
     if (!base_url_.starts_with("http://") && !base_url_.starts_with("https://"))
       return fail(ErrorCode::invalid_argument, name_, operation_, "the address must start with http://");
 
-    body_.clear();
     set(CURLOPT_URL, (base_url_ + request.path).c_str());
     set_method(request);
+    FORAGER_TRY(begin_transfer());
+    deadline_ = Deadline(now, request.timeout);
+    timeout_ = request.timeout;
+    return {};
+  }
+
+  Result<> begin_transfer() {
+    body_.clear();
     if (credentials_) {
       // Without ONLY, libcurl would begin every series with an empty PUT to provoke the challenge, which a
       // reader without passwords would carry out.
@@ -92,8 +99,6 @@ class CurlHttpClient final : public HttpClient {
     if (curl_multi_add_handle(multi_.get(), easy_.get()) != CURLM_OK)
       return fail(ErrorCode::io, name_, operation_, "libcurl did not take the request");
     in_flight_ = true;
-    deadline_ = Deadline(now, request.timeout);
-    timeout_ = request.timeout;
     int running = 0;
     (void)curl_multi_perform(multi_.get(), &running);  // begins to connect; the outcome shows in poll()
     return {};
@@ -121,7 +126,7 @@ class CurlHttpClient final : public HttpClient {
     if (!in_flight_) return fail(ErrorCode::invalid_state, name_, "poll", "no request is in flight");
     int running = 0;
     if (curl_multi_perform(multi_.get(), &running) != CURLM_OK) {
-      finish();
+      end_transfer();
       return fail(ErrorCode::io, name_, operation_, "libcurl failed");
     }
     int queued = 0;
@@ -129,7 +134,7 @@ class CurlHttpClient final : public HttpClient {
       if (message->msg == CURLMSG_DONE) return conclude(message->data.result);
     }
     if (!deadline_.expired(now)) return std::optional<HttpResponse>();
-    finish();
+    end_transfer();
     return fail(ErrorCode::timeout, name_, operation_,
                 fmt::format("no complete answer within {:.3g} s", to_seconds(timeout_)),
                 "Check power, cable and address of the device");
@@ -142,15 +147,21 @@ class CurlHttpClient final : public HttpClient {
     (void)curl_easy_getinfo(easy_.get(), CURLINFO_RESPONSE_CODE, &status);
     (void)curl_easy_getinfo(easy_.get(), CURLINFO_HTTPAUTH_AVAIL, &schemes);
     (void)curl_easy_getinfo(easy_.get(), CURLINFO_OS_ERRNO, &os_error);
-    finish();
+    end_transfer();
+    if (status == 401 && challenged_ && code == CURLE_OK) {
+      // The server forgot the nonce (it restarted) without saying "stale". It has not carried the request
+      // out.
+      challenged_ = false;
+      FORAGER_TRY(begin_transfer());
+      return std::optional<HttpResponse>();
+    }
     if (code != CURLE_OK) return failure_of(code, static_cast<int>(os_error));
     if (status == 401) return wrong_credentials(static_cast<unsigned long>(schemes));
     if ((static_cast<unsigned long>(schemes) & CURLAUTH_DIGEST) != 0) challenged_ = true;
     return std::optional(HttpResponse{static_cast<int>(status), std::move(body_)});
   }
 
-  Failure wrong_credentials(unsigned long schemes) {
-    challenged_ = false;
+  Failure wrong_credentials(unsigned long schemes) const {
     if (!credentials_)
       return fail(ErrorCode::authentication, name_, operation_, "the device wants a user and a password",
                   "Give them in the board file");
@@ -193,12 +204,11 @@ class CurlHttpClient final : public HttpClient {
     }
   }
 
-  void do_cancel() override { finish(); }
+  void do_cancel() override { end_transfer(); }
 
-  void finish() {
-    // Removing a handle with a transfer under way also closes its connection: no late answer is misread.
+  // Removing a handle with a transfer under way also closes its connection: no late answer is misread.
+  void end_transfer() {
     if (std::exchange(in_flight_, false)) (void)curl_multi_remove_handle(multi_.get(), easy_.get());
-    deadline_.disarm();
   }
 
   std::string_view do_name() const override { return name_; }

@@ -1,5 +1,10 @@
 # Tests of the frame itself: real backends, the include rule, the installed package.
 forager_tests(hal/linux LINKS forager_hal_linux forager_hal)
+if(NOT FORAGER_HAVE_CURL)
+  forager_tests(hal/linux/absent LINKS forager_hal_linux)
+elseif(FORAGER_HAVE_CRYPTO)
+  forager_tests(hal/linux/http LINKS forager_hal_linux PkgConfig::CRYPTO)  # the test server hashes on its own
+endif()
 
 find_program(FORAGER_PYTHON NAMES python3 REQUIRED)
 add_test(NAME include_rule
