@@ -99,10 +99,11 @@ struct SceneRadio {
   double beam_vertical_rad = 1.2217;
   std::string pattern = "cosine";  // cosine, gaussian
   double pattern_exponent = 0.5;   // u = R / (R0 D0^e): 0.5 the paper, 1 the published plugin
-  double spread_db = 2.0;
-  double fade_db = 2.0;
-  double max_range_m = 8.0;
-  double occlusion_db = 0.0;
+  double power_up_limit = 2.0;     // beyond this u a tag has too little power, however long one listens
+  double spread_db = 2.0;          // sensitivity from tag to tag, standard deviation
+  double rician_k_db = 6.0;        // frozen multipath: power of the direct path over the scattered ones
+  double occlusion_db = 0.0;       // loss for each shelf crossed
+  double rssi_at_1m_dbm = -51.0;
 };
 struct SceneWorld {
   std::vector<SceneShelf> shelves;

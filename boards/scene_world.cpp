@@ -48,8 +48,9 @@ SceneRadio read_radio(ConfigReader table) {
   r.pattern = table.choice("pattern", r.pattern, {"cosine", "gaussian"});
   r.pattern_exponent = table.number("pattern_exponent", r.pattern_exponent, {0.1, 4.0});
   r.spread_db = table.number("spread_db", r.spread_db, {0.0, 20.0});
-  r.fade_db = table.number("fade_db", r.fade_db, {0.0, 20.0});
-  r.max_range_m = table.number("max_range_m", r.max_range_m, {0.1, 100.0});
+  r.power_up_limit = table.number("power_up_limit", r.power_up_limit, {0.1, 100.0});
+  r.rician_k_db = table.number("rician_k_db", r.rician_k_db, {-20.0, 100.0});
+  r.rssi_at_1m_dbm = table.number("rssi_at_1m_dbm", r.rssi_at_1m_dbm, {-90.0, 0.0});
   r.occlusion_db = table.number("occlusion_db", r.occlusion_db, {0.0, 60.0});
   return r;
 }
