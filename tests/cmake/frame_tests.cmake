@@ -11,3 +11,8 @@ add_test(NAME include_rule
          COMMAND ${FORAGER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/include_rule.py ${PROJECT_SOURCE_DIR})
 add_test(NAME include_rule_catches_violations
          COMMAND ${FORAGER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/include_rule.py --self-test)
+
+if(TARGET forager AND NOT FORAGER_SANITIZE)  # a stranger's program is built without sanitizers
+  add_test(NAME consumer COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/consumer/run.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
+  set_tests_properties(consumer PROPERTIES TIMEOUT 300)
+endif()
