@@ -29,13 +29,13 @@ struct RunSummary {
   std::size_t tags_read = 0;                // of those (in a real place: all different tags)
   std::size_t other_tags_read = 0;          // bystanders
   std::uint64_t reads = 0;
-  double sim_time_s = 0.0;      // from the start of the run to its end
-  double flight_time_s = 0.0;   // from take-off to touch-down
+  double sim_time_s = 0.0;     // from the start of the run to its end
+  double flight_time_s = 0.0;  // from take-off to touch-down
   double path_m = 0.0;
   std::size_t decisions = 0;
   std::uint32_t windows = 0;
   flight::EndReason end = flight::EndReason::none;
-  std::string detail;           // why, in words
+  std::string detail;  // why, in words
   std::uint32_t reader_losses = 0;
   std::uint32_t crashes = 0;
   std::optional<double> battery_fraction;

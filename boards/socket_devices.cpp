@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <utility>
+
+#include "boards/device_set.hpp"
+#include "boards/world_builder.hpp"
+#include "hal/linux/curl_http_client.hpp"
+#include "hal/linux/tcp_stream.hpp"
+#include "hal/linux/udp_peer.hpp"
+#include "mocks/ray_cast_depth.hpp"
+#include "mocks/sim_pose_source.hpp"
+#include "mocks/truth_feed.hpp"
+
+namespace forager::boards {
+namespace {
+
+// Reader and autopilot behind sockets; camera and localisation computed from where the emulated autopilot
+// says the vehicle really is.
+class SocketDevices final : public DeviceSet {
+ public:
+  SocketDevices(const Scene& scene, const Board& board, std::optional<hal::HttpCredentials> credentials,
+                const DeviceOptions& options)
+      : world_(build_world(scene, options.seed)),
+        facts_(facts_of(scene, world_)),
+        rest_(hal::make_curl_http_client(
+            fmt::format("http://{}:{}", board.reader_host, board.reader_rest_port), std::move(credentials))),
+        events_(hal::open_tcp_stream(board.reader_host, board.reader_stream_port)),
+        autopilot_(hal::open_udp_peer(board.autopilot.host, board.autopilot.port)),
+        truth_(hal::open_udp_listener(board.truth.host, board.truth.port)),
+        body_(*truth_, start_of(scene)),
+        depth_(world_, body_, depth_options(scene), seed_for(options.seed, SeedStream::camera)),
+        pose_(body_, pose_options(scene), seed_for(options.seed, SeedStream::pose)) {}
+
+  hal::HttpClient& reader_rest() override { return *rest_; }
+  hal::ByteStream& reader_events() override { return *events_; }
+  hal::ByteStream& autopilot() override { return *autopilot_; }
+  hal::DepthSource& depth() override { return depth_; }
+  hal::PoseSource& pose() override { return pose_; }
+  const WorldFacts* world() const override { return &facts_; }
+  void advance(hal::Instant now) override { body_.update(now); }
+
+ private:
+  static mocks::BodyState start_of(const Scene& scene) {
+    mocks::BodyState body;
+    body.pose = scene.vehicle.start;
+    return body;
+  }
+
+  mocks::World world_;
+  WorldFacts facts_;
+  std::unique_ptr<hal::HttpClient> rest_;
+  std::unique_ptr<hal::ByteStream> events_;
+  std::unique_ptr<hal::UdpPeer> autopilot_;
+  std::unique_ptr<hal::UdpPeer> truth_;
+  mocks::TruthFollower body_;
+  mocks::SimDepthCamera depth_;
+  mocks::SimPoseSource pose_;
+};
+
+}  // namespace
+
+hal::Result<std::unique_ptr<DeviceSet>> make_socket_devices(const Scene& scene, const Board& board,
+                                                            const DeviceOptions& options) {
+  std::optional<hal::HttpCredentials> credentials;
+  if (!board.reader_user.empty()) {
+    const char* password = std::getenv(board.reader_password_env.c_str());
+    if (password == nullptr)
+      return hal::fail(hal::ErrorCode::not_present, "board " + board.name, "reader.password_env",
+                       fmt::format("the environment variable {} is not set", board.reader_password_env),
+                       fmt::format("Set it: export {}=...", board.reader_password_env));
+    credentials = hal::HttpCredentials{board.reader_user, password};
+  }
+  return std::make_unique<SocketDevices>(scene, board, std::move(credentials), options);
+}
+
+}  // namespace forager::boards
