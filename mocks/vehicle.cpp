@@ -117,6 +117,8 @@ Vec3 Vehicle::velocity_demand(Vec3& slope) const {
       slope = -a.slope * std::max(0.0, closing) * unit;
     }
   }
+  // Where a limit decides, the curve is not followed.
+  if (demand.x * demand.x + demand.y * demand.y > p.max_speed_m_s * p.max_speed_m_s) slope = {};
   demand = limited_xy(demand, p.max_speed_m_s);
   if (command_.vertical == VehicleCommand::Follow::position) {
     const double way = command_.position_world.z - state_.pose.position.z;
@@ -126,6 +128,7 @@ Vec3 Vehicle::velocity_demand(Vec3& slope) const {
     demand.z += std::copysign(a.speed, way);
     slope.z = -a.slope * std::max(0.0, closing) * (way > 0.0 ? 1.0 : -1.0);
   }
+  if (demand.z < -p.max_descent_m_s || demand.z > p.max_climb_m_s) slope.z = 0.0;
   demand.z = std::clamp(demand.z, -p.max_descent_m_s, p.max_climb_m_s);
   return demand;
 }
