@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "boards/emulate.hpp"
+#include "boards/world_builder.hpp"
+#include "hal/linux/udp_peer.hpp"
+#include "hal/units.hpp"
+#include "mocks/sim_autopilot.hpp"
+#include "mocks/truth_feed.hpp"
+
+namespace forager::boards {
+namespace {
+
+constexpr hal::Duration kTruthInterval = std::chrono::milliseconds(20);
+
+class AutopilotServer final : public EmulatedServer {
+ public:
+  AutopilotServer(const Scene& scene, const EmulatedAutopilotOptions& options,
+                  std::unique_ptr<hal::UdpPeer> line, hal::Journal& journal)
+      : options_(options),
+        world_(build_world(scene, options.seed)),
+        line_(std::move(line)),
+        autopilot_(*line_, autopilot_config(scene, options.seed)) {
+    autopilot_.attach(&world_, &journal);
+    autopilot_.set_battery_fraction(scene.vehicle.battery_start);
+    autopilot_.faults().refuse_arming = options.refuse_arming;
+    for (const Endpoint& listener : options.truth) {
+      listeners_.push_back(hal::open_udp_peer(listener.host, listener.port));
+      feeds_.push_back(std::make_unique<mocks::TruthFeed>(autopilot_, *listeners_.back(), kTruthInterval));
+    }
+  }
+
+  void update(hal::Instant now) override {
+    autopilot_.update(now);
+    for (auto& feed : feeds_) feed->update(now);
+  }
+
+  std::string address() const override {
+    return fmt::format("MAVLink 2 on udp {}:{}", options_.listen.host, line_->local_port());
+  }
+
+  std::string status() const override {
+    const mocks::BodyState& body = autopilot_.state();
+    return fmt::format("{} {} at x {:.2f} y {:.2f} z {:.2f} m, heading {:.0f} deg, battery {:.0f} %",
+                       body.armed ? "armed" : "disarmed", body.on_ground ? "on the ground" : "in the air",
+                       body.pose.position.x, body.pose.position.y, body.pose.position.z,
+                       hal::rad_to_deg(body.pose.yaw_rad), 100.0 * autopilot_.vehicle().battery_fraction());
+  }
+
+ private:
+  EmulatedAutopilotOptions options_;
+  mocks::World world_;
+  std::unique_ptr<hal::UdpPeer> line_;
+  mocks::SimAutopilot autopilot_;
+  std::vector<std::unique_ptr<hal::UdpPeer>> listeners_;
+  std::vector<std::unique_ptr<mocks::TruthFeed>> feeds_;
+};
+
+}  // namespace
+
+hal::Result<std::unique_ptr<EmulatedServer>> emulate_autopilot(const Scene& scene,
+                                                               const EmulatedAutopilotOptions& options,
+                                                               hal::Journal& journal) {
+  auto line = hal::open_udp_listener(options.listen.host, options.listen.port);
+  FORAGER_TRY(line->open());
+  return std::make_unique<AutopilotServer>(scene, options, std::move(line), journal);
+}
+
+}  // namespace forager::boards
