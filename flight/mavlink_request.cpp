@@ -95,7 +95,7 @@ void MavlinkRequest::update(const AutopilotState& autopilot, std::optional<hal::
                             hal::Instant now) {
   if (state_ != RequestState::pending) return;
   if (refusal_) {
-    const bool explained = last_warning && *last_warning >= begun_;
+    const bool explained = last_warning && *last_warning > begun_;
     if (explained)
       finish_refused(autopilot.last_text);
     else if (now - refused_at_ >= reason_timeout_)
