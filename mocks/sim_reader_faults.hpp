@@ -33,12 +33,12 @@ struct SimReaderFaults {
   bool upper_case_epc = false;  // EPC digits A..F instead of a..f
 
   // Network and REST.
-  bool refuse_connects = false;  // nobody listens, neither for REST nor for the stream
-  std::string refuse_operation;  // this operation ("antennas", "start") answers with status ERROR
-  int refuse_times = -1;         // ... so many times; -1: always
-  hal::Duration rest_delay{};    // each REST request takes this long, one after the other
-  double http_500 = 0.0;         // per request: HTTP status 500 and no envelope
-  std::optional<std::int64_t> clock_at_boot_ms;  // replaces the configured clock at the next boot
+  bool refuse_connects = false;    // nobody listens, neither for REST nor for the stream
+  std::string refuse_operation{};  // this operation ("antennas", "start") answers with status ERROR
+  int refuse_times = -1;           // ... so many times; -1: always
+  hal::Duration rest_delay{};      // each REST request takes this long, one after the other
+  double http_500 = 0.0;           // per request: HTTP status 500 and no envelope
+  std::optional<std::int64_t> clock_at_boot_ms{};  // replaces the configured clock at the next boot
 };
 
 }  // namespace forager::mocks

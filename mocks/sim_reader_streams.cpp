@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 #include "mocks/sim_reader_xml.hpp"
 
@@ -126,7 +127,7 @@ bool SimReaderStreams::service(Line& line, hal::Instant now) {
 void SimReaderStreams::welcome(Line& line, hal::Instant now) {
   line.client = true;
   line.head = line.count = line.sent = 0;
-  line.prepared = false;
+  line.prepared = line.joined = false;
   line.silent_until = line.join_until = now;
   line.next_keep_alive = now + kKeepAlivePeriod;
   note(now, line, "connected");
@@ -163,7 +164,11 @@ void SimReaderStreams::prepare(Line& line, hal::Instant now) {
   }
   line.split = happens(faults_->split_frame);
   line.close_after = happens(faults_->close_abruptly) ? 1 + random_.below(frame.size() - 1) : 0;
-  if (happens(faults_->join_frame)) line.join_until = now + kJoinPatience;
+  // The frame that another one waited for goes out with it, whatever its own fate would be.
+  if (!std::exchange(line.joined, false) && happens(faults_->join_frame)) {
+    line.join_until = now + kJoinPatience;
+    line.joined = true;
+  }
   if (happens(faults_->pause)) {
     line.silent_until = now + faults_->pause_length;
     note(now, line, "gets nothing for a while");
@@ -183,6 +188,7 @@ bool SimReaderStreams::send(Line& line, hal::Instant now) {
   while (line.count > 0) {
     if (!line.prepared) prepare(line, now);
     if (now < line.silent_until || (now < line.join_until && line.count < 2)) return true;
+    line.join_until = now;
     const std::string_view frame = line.queue[line.head];
     std::string_view piece = frame.substr(line.sent);
     if (line.split) piece = piece.substr(0, 1 + random_.below(piece.size()));

@@ -60,6 +60,7 @@ class SimReaderStreams {
     std::size_t sent = 0;   // bytes of the front frame already sent
     bool prepared = false;  // faults of the front frame have been drawn
     bool split = false;
+    bool joined = false;          // a frame is waiting, or has waited, for the next one
     std::size_t close_after = 0;  // bytes of the front frame after which the connection is closed; 0: never
     hal::Instant join_until;
     hal::Instant silent_until;
