@@ -9,7 +9,7 @@
 #include "mocks/sim_autopilot.hpp"
 #include "mocks/sim_pose_source.hpp"
 #include "mocks/sim_reader.hpp"
-#include "mocks/sim_reader_http_client.hpp"
+#include "mocks/sim_http_client.hpp"
 
 namespace forager::boards {
 namespace {
