@@ -171,7 +171,8 @@ Result SimAutopilot::execute_interval(const Command& command) {
     return Result::accepted;
   }
   if (interval_us < 1e6 / (0.8 * config_.loop_rate_hz)) return Result::denied;
-  stream->interval = hal::from_seconds(interval_us * 1e-6);
+  constexpr double kLongestUs = 60e6;  // what GCS_MAVLINK keeps
+  stream->interval = hal::from_seconds(std::min(interval_us, kLongestUs) * 1e-6);
   stream->next = clock_ + stream->interval;
   return Result::accepted;
 }

@@ -1,5 +1,7 @@
 #include "mocks/sim_autopilot_target.hpp"
 
+#include <cmath>
+
 #include "hal/units.hpp"
 
 namespace forager::mocks {
@@ -14,8 +16,8 @@ Vec3 triple(const MavlinkPayload& m, std::size_t offset) {
 // Yaw or its rate; neither keeps the heading (WP_YAW_BEHAVIOR 0, the setting for indoors).
 void decode_yaw(const MavlinkPayload& m, std::uint16_t mask, bool relative, const NedEstimate& estimate,
                 GuidedTarget& target) {
-  const bool use_yaw = (mask & peer::kIgnoreYaw) == 0;
-  const bool use_rate = (mask & peer::kIgnoreYawRate) == 0;
+  const bool use_yaw = (mask & peer::kIgnoreYaw) == 0 && std::isfinite(m.f32(40));
+  const bool use_rate = (mask & peer::kIgnoreYawRate) == 0 && std::isfinite(m.f32(44));
   target.yaw = !use_yaw && use_rate ? GuidedTarget::Yaw::rate : GuidedTarget::Yaw::angle;
   target.yaw_rate_rad_s = use_rate ? m.f32(44) : 0.0;
   target.yaw_rad = estimate.yaw_rad;
@@ -57,8 +59,9 @@ bool decode_guided_target(const MavlinkPayload& m, const NedEstimate& estimate, 
   const Vec3 place = turned(triple(m, 4));
   const Vec3 speed = turned(triple(m, 16));
   const Vec3 push = turned(triple(m, 28));
-  if (!known || made.kind == Kind::hold || !hal::is_finite(place) || !hal::is_finite(speed) ||
-      !hal::is_finite(push)) {
+  const bool finite = (!position || hal::is_finite(place)) && (!velocity || hal::is_finite(speed)) &&
+                      (!acceleration || hal::is_finite(push));
+  if (!known || !finite || made.kind == Kind::hold) {
     target = hold_here(estimate, now);
     return true;
   }

@@ -26,7 +26,15 @@ constexpr std::uint16_t kEkfLost = 0x1 | 0x4 | 0x20 | 0x80;
 
 constexpr double kMetresPerDegree = 6378137.0 * hal::kPi / 180.0;
 
-std::int16_t centi(double value) { return static_cast<std::int16_t>(std::lround(100.0 * value)); }
+// Nearest whole number, held within what the field can say.
+template <class T>
+T whole(double value) {
+  using Limits = std::numeric_limits<T>;
+  return static_cast<T>(
+      std::lround(std::clamp(value, static_cast<double>(Limits::min()), static_cast<double>(Limits::max()))));
+}
+
+std::int16_t centi(double value) { return whole<std::int16_t>(100.0 * value); }
 
 }  // namespace
 
@@ -139,7 +147,7 @@ void SimAutopilot::fill_sys_status(MavlinkPayload& p) {
   p.put(0, kSensors | kPrearmCheck);
   p.put(4, kSensors | kPrearmCheck);
   p.put(8, health);
-  p.put(14, static_cast<std::uint16_t>(std::lround(1000.0 * vehicle_.battery_v())));
+  p.put(14, whole<std::uint16_t>(1000.0 * vehicle_.battery_v()));
   p.put(16, centi(vehicle_.battery_a()));
   p.put(30, static_cast<std::int8_t>(100.0 * vehicle_.battery_fraction()));
 }
@@ -150,7 +158,7 @@ void SimAutopilot::fill_battery(MavlinkPayload& p) const {
   p.put(4, std::int32_t{-1});                          // energy: not measured
   p.put(8, std::numeric_limits<std::int16_t>::max());  // temperature: not measured
   for (std::size_t i = 0; i < 10; ++i) p.put(10 + 2 * i, std::numeric_limits<std::uint16_t>::max());
-  p.put(10, static_cast<std::uint16_t>(std::lround(1000.0 * vehicle_.battery_v())));
+  p.put(10, whole<std::uint16_t>(1000.0 * vehicle_.battery_v()));
   p.put(30, centi(vehicle_.battery_a()));
   p.put(35, static_cast<std::int8_t>(100.0 * left));
   p.put(40, static_cast<std::uint8_t>(left < config_.arming_battery ? 2 : 1));  // charge state: low, ok
@@ -163,7 +171,7 @@ void SimAutopilot::fill_attitude(MavlinkPayload& p) const {
   p.f32(4, body.pose.roll_rad);
   p.f32(8, -body.pose.pitch_rad);
   p.f32(12, estimator_.estimate().yaw_rad);
-  p.f32(24, -body.yaw_rate_rad_s + faults_.yaw_drift_rad_s * -1.0);
+  p.f32(24, -body.yaw_rate_rad_s - faults_.yaw_drift_rad_s);
 }
 
 void SimAutopilot::fill_local_position(MavlinkPayload& p) const {
@@ -183,16 +191,16 @@ void SimAutopilot::fill_global_position(MavlinkPayload& p) const {
   const double north_deg = e.position_m.x / kMetresPerDegree;
   const double east_deg = e.position_m.y / (kMetresPerDegree * std::cos(hal::deg_to_rad(latitude_deg)));
   p.put(0, boot_ms());
-  p.put(4, origin_[0] + static_cast<std::int32_t>(std::lround(1e7 * north_deg)));
-  p.put(8, origin_[1] + static_cast<std::int32_t>(std::lround(1e7 * east_deg)));
-  p.put(12, origin_[2] - static_cast<std::int32_t>(std::lround(1000.0 * e.position_m.z)));
-  p.put(16, static_cast<std::int32_t>(std::lround(1000.0 * (home_ned_m_.z - e.position_m.z))));
+  p.put(4, whole<std::int32_t>(origin_[0] + 1e7 * north_deg));
+  p.put(8, whole<std::int32_t>(origin_[1] + 1e7 * east_deg));
+  p.put(12, whole<std::int32_t>(origin_[2] - 1000.0 * e.position_m.z));
+  p.put(16, whole<std::int32_t>(1000.0 * (home_ned_m_.z - e.position_m.z)));
   p.put(20, centi(e.velocity_m_s.x));
   p.put(22, centi(e.velocity_m_s.y));
   p.put(24, centi(e.velocity_m_s.z));
   const double heading_deg = hal::rad_to_deg(e.yaw_rad);
-  p.put(26, static_cast<std::uint16_t>(
-                std::lround(100.0 * (heading_deg < 0 ? heading_deg + 360.0 : heading_deg)) % 36000));
+  const double clockwise_deg = heading_deg < 0 ? heading_deg + 360.0 : heading_deg;
+  p.put(26, static_cast<std::uint16_t>(whole<std::uint16_t>(100.0 * clockwise_deg) % 36000));
 }
 
 // The truth, unlike all others: the world's axes with y and z turned round, 1e-7 degrees left at zero.

@@ -48,17 +48,18 @@ class AutopilotBench {
     (void)line_.near().write(packer_.pack(kind, payload));
   }
 
-  // Where the vehicle is, as a camera would say, plus the offset.
+  // Where the vehicle is, as a camera would say, with the offset and the turned frame below.
   void send_vision() {
     const hal::Pose& pose = truth().pose;
     MavlinkPayload p;
     p.put(0, static_cast<std::uint64_t>(now_.time_since_epoch().count() / 1000));
-    p.f32(8, pose.position.x + vision_offset.x);
-    p.f32(12, -pose.position.y - vision_offset.y);
-    p.f32(16, -pose.position.z - vision_offset.z);
+    const hal::Vec3 at = hal::rotate_yaw(pose.position + vision_offset, vision_frame_yaw);
+    p.f32(8, at.x);
+    p.f32(12, -at.y);
+    p.f32(16, -at.z);
     p.f32(20, pose.roll_rad);
     p.f32(24, -pose.pitch_rad);
-    p.f32(28, hal::wrap_pi(-pose.yaw_rad - vision_yaw_offset));
+    p.f32(28, hal::wrap_pi(-pose.yaw_rad - vision_frame_yaw - vision_yaw_error));
     p.put(116, reset_counter);
     send(peer::kVisionPositionEstimate, p);
   }
@@ -133,8 +134,9 @@ class AutopilotBench {
 
   hal::Duration tick = std::chrono::milliseconds(20);
   bool vision = true;
-  hal::Vec3 vision_offset;  // world frame
-  double vision_yaw_offset = 0.0;
+  hal::Vec3 vision_offset;        // world frame
+  double vision_frame_yaw = 0.0;  // heading of the world's x in the camera's frame, left positive
+  double vision_yaw_error = 0.0;
   std::uint8_t reset_counter = 0;
   std::map<std::uint32_t, MavlinkPeerFrame> last;
   std::map<std::uint32_t, std::uint64_t> counts;

@@ -104,15 +104,26 @@ TEST(SimAutopilotVision, FourHertzIsEnoughThreeIsNot) {
   }
 }
 
-// A driver that sends its heading with the wrong sign makes the real vehicle run away; this one too.
-TEST(SimAutopilotVision, FliesInTheFrameOfTheVisionWhateverItsHeading) {
+// The camera's frame may point anywhere; the vehicle flies in it.
+TEST(SimAutopilotVision, FliesInTheFrameOfTheVision) {
   AutopilotBench bench;
-  bench.vision_yaw_offset = -hal::kPi / 2;  // the camera's north is the world's right
+  bench.vision_frame_yaw = -hal::kPi / 2;  // the world's x is the camera's east
   bench.fly();
-  bench.setpoint(0xDF8, {bench.sim().estimator().estimate().position_m.x, 0.0, -1.5});
-  bench.run(5s);
-  const double estimated = bench.sim().estimator().estimate().yaw_rad;
-  EXPECT_NEAR(estimated, hal::kPi / 2, 0.01);
+  EXPECT_NEAR(bench.sim().estimator().estimate().yaw_rad, hal::kPi / 2, 0.01);
+  bench.setpoint(0xDF8, {2.0, 1.0, -1.5});
+  bench.run(6s);
+  EXPECT_NEAR(bench.truth().pose.position.x, 1.0, 0.02);
+  EXPECT_NEAR(bench.truth().pose.position.y, 2.0, 0.02);
+}
+
+// Positions and headings that do not belong together make a real vehicle run away.
+TEST(SimAutopilotVision, RunsAwayWhenHeadingAndPositionContradict) {
+  AutopilotBench bench;
+  bench.vision_yaw_error = hal::kPi;
+  bench.fly();
+  bench.setpoint(0xDF8, {2.0, 0.0, -1.5});
+  bench.run(10s);
+  EXPECT_LT(bench.truth().pose.position.x, -2.0);
 }
 
 TEST(SimAutopilotVision, YawDriftIsHeldByVisionAndRunsWithoutIt) {
