@@ -5,7 +5,7 @@
 
 #include <array>
 #include <cctype>
-#include <regex>
+#include <sstream>
 
 #include "tests/hal/eventually.hpp"
 
@@ -89,9 +89,13 @@ bool DigestGuard::admits(const SeenRequest& request) const {
   const auto header = request.headers.find("authorization");
   if (header == request.headers.end() || !header->second.starts_with("Digest ")) return false;
   std::map<std::string, std::string> field;
-  const std::regex pair("(\\w+)=(?:\"([^\"]*)\"|([^,\\s]+))");
-  for (std::sregex_iterator it(header->second.begin(), header->second.end(), pair), end; it != end; ++it)
-    field[(*it)[1]] = (*it)[2].matched ? (*it)[2] : (*it)[3];
+  std::istringstream parts(header->second.substr(7));
+  for (std::string part; std::getline(parts >> std::ws, part, ',');) {
+    const std::size_t equals = part.find('=');
+    std::string value = part.substr(equals + 1);
+    std::erase(value, '"');
+    field[part.substr(0, equals)] = value;
+  }
   if (field["nonce"] != nonce_ || field["uri"] != request.target || field["username"] != user_ ||
       field["qop"] != "auth" || field["nc"].size() != 8)
     return false;
