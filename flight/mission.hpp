@@ -29,6 +29,7 @@ enum class EndReason : std::uint8_t {
   reader_lost,     // the reader did not come back within its allowance
   pose_lost,       // localisation failed: landing on the autopilot's own estimate
   autopilot_lost,  // no heartbeat from the autopilot
+  store_failed,    // the inventory cannot be stored any more
   autopilot_mode,  // somebody took the vehicle out of GUIDED: it is theirs now
   refused,         // arming or take-off refused; never left the ground
   halted,          // asked to stop (signal, operator)
