@@ -51,7 +51,8 @@ class SimAutopilot : public TrueBody {
 
   [[nodiscard]] SimAutopilotFaults& faults() { return faults_; }
   void set_battery_fraction(double fraction) { vehicle_.set_battery_fraction(fraction); }
-  // The pilot's switch. False: refused, as the real one would (a text says why).
+  // A mode switch from outside the line; `reason` goes to the journal ("pilot"). False: refused, as the real
+  // one would (a text says why).
   bool set_mode(peer::CopterMode mode, std::string_view reason = {});
 
  private:

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hal/units.hpp"
@@ -197,7 +200,10 @@ bool SimAutopilot::set_mode(CopterMode mode, std::string_view reason) {
   rtl_ = Rtl::climb;
   turn_left_rad_ = 0.0;
   target_ = hold_here(estimator_.estimate(), clock_);
-  note(reason == "pilot" ? "mode changed by the pilot" : "mode changed");
+  std::array<char, 64> line{};
+  const auto end = fmt::format_to_n(line.data(), line.size(), "mode {}{}{}", static_cast<int>(mode),
+                                    reason.empty() ? "" : " by ", reason);
+  note({line.data(), std::min(end.size, line.size())});
   return true;
 }
 

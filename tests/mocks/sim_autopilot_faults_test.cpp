@@ -108,11 +108,14 @@ TEST(SimAutopilotFaults, HeartbeatsMayStopWhileTheRestGoesOn) {
 }
 
 TEST(SimAutopilotFaults, ThePilotTakesOver) {
+  TextJournal journal;
   AutopilotBench bench;
+  bench.sim().attach(nullptr, &journal);
   bench.sim().faults().pilot = SimAutopilotFaults::PilotMode{15s, CopterMode::loiter};
   bench.fly();
   bench.run(8s);
   EXPECT_EQ(bench.sim().mode(), CopterMode::loiter);
+  EXPECT_EQ(journal.count("mode 5 by pilot"), 1u);
   EXPECT_EQ(bench.message(peer::kHeartbeat).get<std::uint32_t>(0), 5u);
   bench.setpoint(0xDF8, {2, 0, -1.5});
   bench.run(4s);
