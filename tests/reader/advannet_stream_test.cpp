@@ -150,7 +150,7 @@ TEST(AdvanNetStream, SteadyStateAllocatesNothing) {
       std::memcpy(room.data(), rest.data(), size);
       stream.commit(size);
       rest.remove_prefix(size);
-      while (const auto& body = *stream.next()) frames += body->size() == 1200;
+      while (const auto body = *stream.next()) frames += body->size() == 1200;
     }
   }
   EXPECT_EQ(test::allocation_count(), before);
