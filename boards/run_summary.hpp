@@ -15,7 +15,7 @@ struct PortSummary {
   std::string name;
   double bearing_rad = 0.0;
   std::uint64_t reads = 0;
-  std::uint32_t new_tags = 0;  // heard first by this port
+  double new_tags = 0.0;  // heard first by this port (shares with the split rule)
 };
 
 // What a run came to.

@@ -65,6 +65,19 @@ hal::Result<Scene> read_scene(const ConfigNode& root, const std::string& file) {
   return scene;
 }
 
+hal::Result<> change_policy(Scene& scene, PolicyKind policy) {
+  scene.mission.policy = policy;
+  const bool endless = policy == PolicyKind::hover || policy == PolicyKind::random_walk;
+  if (endless && !scene.mission.time_limit)
+    return hal::fail(hal::ErrorCode::invalid_argument, scene.file, "policy " + std::string(to_string(policy)),
+                     "needs [mission] time_limit_s",
+                     "Add it to the scene: this policy never ends by itself.");
+  if (policy == PolicyKind::dead_reckoning && scene.mission.waypoints.empty())
+    return hal::fail(hal::ErrorCode::invalid_argument, scene.file, "policy dead_reckoning",
+                     "needs [mission] waypoints", "Add the path to the scene: waypoints = [[15.0, 0.0]].");
+  return {};
+}
+
 hal::Result<Scene> load_scene(const std::string& path) {
   auto root = load_config(path);
   if (!root) return hal::fail(std::move(root).error());

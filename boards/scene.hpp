@@ -133,4 +133,8 @@ struct Scene {
 // The same from a parsed tree; for tests and fuzzers.
 [[nodiscard]] hal::Result<Scene> read_scene(const ConfigNode& root, const std::string& file);
 
+// Flies the scene with another policy than its own. Errors: invalid_argument if the scene lacks what that
+// policy needs (waypoints, a time limit).
+[[nodiscard]] hal::Result<> change_policy(Scene& scene, PolicyKind policy);
+
 }  // namespace forager::boards

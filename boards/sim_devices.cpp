@@ -7,9 +7,9 @@
 #include "mocks/memory_stream.hpp"
 #include "mocks/ray_cast_depth.hpp"
 #include "mocks/sim_autopilot.hpp"
+#include "mocks/sim_http_client.hpp"
 #include "mocks/sim_pose_source.hpp"
 #include "mocks/sim_reader.hpp"
-#include "mocks/sim_http_client.hpp"
 
 namespace forager::boards {
 namespace {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+
+#include "boards/board.hpp"
+#include "boards/scene.hpp"
+#include "flight/mavlink_config.hpp"
+#include "flight/robot_loop.hpp"
+#include "reader/advannet_reader.hpp"
+
+namespace forager::boards {
+
+// A scene in the terms of the parts that carry it out.
+[[nodiscard]] flight::RobotLoopConfig robot_config(const Scene& scene, std::size_t expected_tags);
+[[nodiscard]] flight::MavlinkConfig mavlink_config(const Scene& scene, bool journal_wire);
+[[nodiscard]] reader::AdvanNetConfig advannet_config(const Scene& scene, const Board& board);
+
+}  // namespace forager::boards

@@ -1,0 +1,177 @@
+#include "tools/cmd_run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "boards/run.hpp"
+#include "boards/run_clock.hpp"
+#include "boards/run_journal.hpp"
+#include "tools/cli_style.hpp"
+#include "tools/run_output.hpp"
+#include "tools/run_report.hpp"
+#include "tools/run_watch.hpp"
+#include "tools/stop_signal.hpp"
+
+namespace forager::tools {
+namespace {
+
+using boards::Run;
+using WallClock = std::chrono::steady_clock;
+
+struct Files {
+  std::string folder;  // empty: none
+  std::string report, inventory, journal;
+};
+
+// A simulated run may be repeated into the same folder; the inventory of a real place is never overwritten.
+hal::Result<Files> make_files(const RunCommand& command, const boards::Scene& scene,
+                              const boards::Board& board) {
+  if (command.no_files) return Files{};
+  Files files;
+  files.folder = !command.output.empty()
+                     ? command.output
+                     : fmt::format("out/{}-{}-{}", scene.name, to_string(scene.mission.policy), command.seed);
+  std::error_code error;
+  std::filesystem::create_directories(files.folder, error);
+  if (error)
+    return hal::fail(hal::ErrorCode::io, files.folder, "create output folder", "cannot be created",
+                     "Choose another with --output.", error.value());
+  files.report = files.folder + "/report.html";
+  files.inventory = files.folder + "/inventory.sqlite";
+  files.journal = files.folder + "/journal.txt";
+  if (std::filesystem::exists(files.inventory)) {
+    if (board.kind != boards::BoardKind::sim)
+      return hal::fail(hal::ErrorCode::invalid_argument, files.inventory, "create inventory",
+                       "is already there",
+                       "Choose another folder with --output; an inventory is never overwritten.");
+    for (const char* tail : {"", "-wal", "-shm"}) std::filesystem::remove(files.inventory + tail, error);
+  }
+  return files;
+}
+
+hal::Result<boards::Scene> scene_for(const RunCommand& command) {
+  auto scene = boards::load_scene(command.scene);
+  if (!scene || command.policy.empty()) return scene;
+  auto policy = boards::policy_from(command.policy);
+  if (!policy) return hal::fail(std::move(policy).error());
+  FORAGER_TRY(boards::change_policy(*scene, *policy));
+  return scene;
+}
+
+int exit_code_of(const boards::RunSummary& summary) {
+  using flight::EndReason;
+  if (summary.crashes > 0) return kExitCheckFailed;
+  switch (summary.end) {
+    case EndReason::refused:
+      return kExitCheckFailed;
+    case EndReason::reader_lost:
+    case EndReason::pose_lost:
+    case EndReason::autopilot_lost:
+      return kExitFailure;
+    default:
+      return kExitDone;
+  }
+}
+
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+// The outermost loop: the only one that waits.
+void fly(Run& run, hal::Clock& clock, RunWatch& watch, WallClock::time_point wall_start) {
+  const StopSignal signals;
+  bool told = false;
+  for (hal::Instant next = clock.now(); !run.done(); next += Run::kTick) {
+    clock.sleep_until(next);
+    const hal::Instant now = clock.now();
+    if (StopSignal::raised() && !told) {
+      run.halt();
+      told = true;
+    }
+    run.update(now);
+    watch.update(run, now, seconds_since(wall_start));
+    if (now > next + std::chrono::seconds(1)) next = now;  // the machine stood still: do not hurry after it
+  }
+}
+
+int close_run(Run& run, const RunCommand& command, const Files& files, const RunWatch& watch,
+              double wall_time_s, hal::Instant ended) {
+  const auto summary = run.summary();
+  if (!summary) return complain(summary.error());
+  if (!files.folder.empty()) {
+    const auto data = report_of(run, *summary, watch, wall_time_s, ended);
+    if (!data) return complain(data.error());
+    if (auto written = write_output(files.report, render_html_report(*data)); !written)
+      return complain(written.error());
+  }
+  const std::string text =
+      command.json ? summary_json(*summary, wall_time_s) + "\n" : summary_table(*summary, wall_time_s);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  if (!command.json && !files.folder.empty())
+    std::fprintf(stdout, "  %-16s%s\n", "report", files.report.c_str());
+  return exit_code_of(*summary);
+}
+
+}  // namespace
+
+int run_run_command(const RunCommand& command) {
+  const auto scene = scene_for(command);
+  if (!scene) return complain(scene.error());
+  const auto board = boards::load_board(command.board);
+  if (!board) return complain(board.error());
+  const auto files = make_files(command, *scene, *board);
+  if (!files) return complain(files.error());
+
+  RunWatch watch(
+      {.json = command.json, .progress = !command.json && !command.quiet && isatty(STDERR_FILENO) != 0});
+  auto journal = boards::RunJournal::open(
+      files->journal, [&watch](hal::Instant now, std::string_view source, std::string_view text) {
+        watch.note(now, source, text);
+      });
+  if (!journal) return complain(journal.error());
+
+  const bool real = command.real_time || command.speed != 1.0 || board->kind != boards::BoardKind::sim;
+  const auto clock = real ? boards::make_real_clock(command.speed) : boards::make_virtual_clock();
+  auto run = Run::prepare(*scene, *board,
+                          {.seed = command.seed,
+                           .inventory_path = files->inventory,
+                           .journal = journal->get(),
+                           .journal_wire = command.wire},
+                          clock->now());
+  if (!run) return complain(run.error());
+  const auto wall_start = WallClock::now();
+  fly(**run, *clock, watch, wall_start);
+  const double wall_time_s = seconds_since(wall_start);
+  watch.finish();
+  if (!(*journal)->flush())
+    return complain(
+        {hal::ErrorCode::io, files->journal, "write journal", "cannot be written", "Is the disk full?", 0});
+  return close_run(**run, command, *files, watch, wall_time_s, clock->now());
+}
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto command = std::make_shared<RunCommand>();
+  CLI::App* sub = app.add_subcommand("run", "Fly a mission: every device emulated, or those of a board file");
+  sub->add_option("scene", command->scene, "Scene file, such as scenes/4A.toml")->required();
+  sub->add_option("--board", command->board, "'sim' or a board file")->capture_default_str();
+  sub->add_option("--seed", command->seed, "Seed of everything random")->capture_default_str();
+  sub->add_option("--policy", command->policy,
+                  "Instead of the scene's: stigmergy, static, dead_reckoning, stop_and_rotate, random_walk");
+  sub->add_option("--output", command->output, "Folder for report, inventory and journal");
+  sub->add_flag("--no-files", command->no_files, "Write no files");
+  sub->add_flag("--real-time", command->real_time, "At the pace of the clock instead of as fast as possible");
+  sub->add_option("--speed", command->speed, "Real time, this many times as fast (emulated devices only)")
+      ->check(CLI::Range(0.01, 1000.0));
+  sub->add_flag("--json", command->json, "JSON lines on stdout; the last one is the summary");
+  sub->add_flag("--quiet", command->quiet, "No progress line");
+  sub->add_flag("--wire", command->wire, "Bytes of both links into the journal too");
+  sub->callback([command, &exit_code] { exit_code = run_run_command(*command); });
+}
+
+}  // namespace forager::tools

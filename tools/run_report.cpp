@@ -1,0 +1,75 @@
+#include "tools/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <unordered_set>
+
+namespace forager::tools {
+namespace {
+
+std::vector<std::pair<std::string, std::string>> facts_of(const boards::RunSummary& s, double wall_time_s) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  facts.emplace_back("tags read", s.tags_present && *s.tags_present > 0
+                                      ? fmt::format("{} of {} ({:.1f} %)", s.tags_read, *s.tags_present,
+                                                    100.0 * static_cast<double>(s.tags_read) /
+                                                        static_cast<double>(*s.tags_present))
+                                      : fmt::format("{}", s.tags_read));
+  if (s.other_tags_read > 0) facts.emplace_back("other tags", fmt::format("{}", s.other_tags_read));
+  facts.emplace_back("reads", fmt::format("{}", s.reads));
+  facts.emplace_back("time in flight", fmt::format("{:.1f} s of {:.1f} s", s.flight_time_s, s.sim_time_s));
+  facts.emplace_back("time on the clock", fmt::format("{:.2f} s", wall_time_s));
+  facts.emplace_back("path", fmt::format("{:.1f} m", s.path_m));
+  facts.emplace_back("decisions", fmt::format("{} in {} windows", s.decisions, s.windows));
+  facts.emplace_back("ended", s.detail.empty() ? std::string(to_string(s.end))
+                                               : fmt::format("{}: {}", to_string(s.end), s.detail));
+  facts.emplace_back("reader link losses", fmt::format("{}", s.reader_losses));
+  facts.emplace_back("contacts and hard landings", fmt::format("{}", s.crashes));
+  facts.emplace_back("board", s.board);
+  return facts;
+}
+
+void add_world(ReportData& data, const boards::WorldFacts& world, const reader::InventoryStore& inventory,
+               hal::Result<>& outcome) {
+  for (const boards::SceneShelf& shelf : world.shelves) data.boxes.push_back({shelf.min, shelf.max});
+  const auto items = inventory.items();
+  if (!items) {
+    outcome = hal::fail(items.error());
+    return;
+  }
+  std::unordered_set<std::string> read;
+  for (const reader::InventoryItem& item : *items) read.insert(item.epc.hex());
+  for (const boards::WorldFacts::Tag& tag : world.tags)
+    data.tags.push_back({tag.position, read.contains(tag.epc_hex)});
+}
+
+}  // namespace
+
+hal::Result<ReportData> report_of(const boards::Run& run, const boards::RunSummary& summary,
+                                  const RunWatch& watch, double wall_time_s, hal::Instant ended) {
+  ReportData data;
+  data.scene = summary.scene;
+  data.title = summary.title;
+  data.policy = summary.policy;
+  data.seed = summary.seed;
+  data.end_reason = std::string(to_string(summary.end));
+  data.ended = ended;
+  if (const boards::WorldFacts* world = run.world()) {
+    hal::Result<> outcome;
+    add_world(data, *world, run.inventory(), outcome);
+    FORAGER_TRY(std::move(outcome));
+  }
+  for (const auto& point : run.path())
+    data.path.push_back(
+        {point.at, point.pose_world.position.x, point.pose_world.position.y, point.pose_world.yaw_rad});
+  data.decisions = run.status().decisions;
+  data.tags_over_time = watch.samples();
+  data.events = watch.events();
+  for (const boards::PortSummary& port : summary.ports)
+    data.ports.push_back(
+        {port.port, port.name, static_cast<std::uint32_t>(std::lround(port.new_tags)), port.reads});
+  data.facts = facts_of(summary, wall_time_s);
+  return data;
+}
+
+}  // namespace forager::tools
