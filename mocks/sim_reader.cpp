@@ -141,9 +141,10 @@ void SimReader::reboot(hal::Instant now) {
   begin_boot(now);
 }
 
-bool SimReader::reachable(hal::Instant now) {
+HttpReach SimReader::reach(hal::Instant now) {
   catch_up(now);
-  return power_ == Power::on && !config_.faults.refuse_connects;
+  if (power_ == Power::off) return HttpReach::silent;
+  return power_ == Power::on && !config_.faults.refuse_connects ? HttpReach::listening : HttpReach::refusing;
 }
 
 SimReaderEvents::Context SimReader::context(hal::Instant now) const {
@@ -174,6 +175,8 @@ bool SimReader::gpo(int line) const {
 
 std::uint32_t SimReader::submit(hal::HttpMethod method, std::string_view path, std::string_view body,
                                 hal::Instant now) {
+  catch_up(now);
+  if (power_ != Power::on) return ++last_job_;  // lost: knows() says so
   const hal::Instant free = jobs_.empty() ? now : std::max(now, jobs_.back().due);
   jobs_.push_back({++last_job_, method, std::string(path), std::string(body),
                    free + config_.faults.rest_delay, false, false, std::nullopt});

@@ -61,8 +61,10 @@ class SimReader final : public HttpHandler {
                                      hal::Instant now) override;
   [[nodiscard]] std::optional<HttpReply> take(std::uint32_t request, hal::Instant now) override;
   void forget(std::uint32_t request) override;
-  // False once the answer was taken, or when a reboot or power cut swallowed the request.
-  [[nodiscard]] bool knows(std::uint32_t request) const;
+  [[nodiscard]] bool knows(std::uint32_t request) const override;
+  [[nodiscard]] HttpReach reach(hal::Instant now) override;
+  // Powered, booted, and not refusing connects.
+  [[nodiscard]] bool reachable(hal::Instant now) { return reach(now) == HttpReach::listening; }
 
   // Lines to the event stream; see SimReaderStreams.
   [[nodiscard]] SimReaderStreams& streams() { return streams_; }
@@ -73,8 +75,7 @@ class SimReader final : public HttpHandler {
   [[nodiscard]] bool gpo(int line) const;  // 1..10; false for other lines
   void power_cut(hal::Instant now);        // silence: nobody is told, connections hang
   void power_on(hal::Instant now);
-  void reboot(hal::Instant now);                   // orderly: connections are closed first
-  [[nodiscard]] bool reachable(hal::Instant now);  // powered, booted, and not refusing connects
+  void reboot(hal::Instant now);  // orderly: connections are closed first
 
   [[nodiscard]] SimReaderFaults& faults() { return config_.faults; }
   [[nodiscard]] const SimReaderConfig& config() const { return config_; }
