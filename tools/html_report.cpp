@@ -92,7 +92,7 @@ void put_row(std::string& out, std::string_view name, std::string_view value) {
 
 void put_facts(std::string& out, const ReportData& data) {
   if (data.facts.empty()) return;
-  put(out, "<section class=\"card\">\n<h2>Facts</h2>\n<table class=\"facts\"><tbody>\n");
+  put(out, "<section class=\"card full\">\n<h2>Facts</h2>\n<table class=\"facts\"><tbody>\n");
   for (const auto& [name, value] : data.facts) put_row(out, name, value);
   out += "</tbody></table>\n</section>\n";
 }
@@ -148,27 +148,39 @@ void put_events(std::string& out, const ReportData& data) {
   out += "</ol>\n</section>\n";
 }
 
-void put_main(std::string& out, const ReportData& data, const Outcome& outcome) {
-  const ReportMap map = draw_map(data);
-  out += "<main>\n<div class=\"grid\">\n";
-  if (!map.svg.empty()) {
-    put(out, "<section class=\"card{}\">\n<h2>Map</h2>\n{}", map.wide ? " full" : "", map.svg);
-    put_map_legend(out);
-    out += "</section>\n";
-  }
-  out += "<div class=\"stack\">\n";
+void put_map(std::string& out, const ReportMap& map) {
+  put(out, "<section class=\"card{}\">\n<h2>Map</h2>\n{}", map.wide ? " full" : "", map.svg);
+  put_map_legend(out);
+  out += "</section>\n";
+}
+
+void put_figures(std::string& out, const ReportData& data) {
   put_figure(out, "Tags over time", draw_tags_over_time(data));
   put_figure(out, "Decisions over time", draw_decisions_over_time(data));
   put_figure(out, "Tags by port", draw_ports(data));
-  // Beside a tall map there is room for one more; under a wide one the columns are even without it.
-  const bool tall = !map.wide && !map.svg.empty();
-  if (tall) put_closing(out, data, outcome);
+}
+
+// Two columns of about equal height: a tall map fills one of them, a wide one stands above both.
+void put_main(std::string& out, const ReportData& data, const Outcome& outcome) {
+  const ReportMap map = draw_map(data);
+  const bool beside = !map.svg.empty() && !map.wide;
+  out += "<main>\n<div class=\"grid\">\n";
+  if (map.wide) put_map(out, map);
+  out += "<div class=\"stack\">\n";
+  if (beside) {
+    put_map(out, map);
+    put_closing(out, data, outcome);
+  } else {
+    put_figures(out, data);
+  }
   out += "</div>\n<div class=\"stack\">\n";
-  if (!tall) put_closing(out, data, outcome);
+  if (beside)
+    put_figures(out, data);
+  else
+    put_closing(out, data, outcome);
   put_decision_table(out, data);
-  if (tall) out += "</div>\n<div class=\"stack\">\n";
-  put_facts(out, data);
   out += "</div>\n";
+  put_facts(out, data);
   put_events(out, data);
   out += "</div>\n</main>\n";
 }

@@ -70,6 +70,7 @@ overflow-wrap:anywhere}
 tr:last-child th,tr:last-child td{border-bottom:0}
 th{font-weight:400;color:var(--soft)}
 thead th{font-size:.86rem}
+.facts th{width:14rem;max-width:40%}
 .number{text-align:right}
 td.number:last-child,th.number:last-child{padding-right:0}
 .events{margin:0;padding:0;list-style:none;font-size:.94rem;max-height:26rem;overflow:auto}
