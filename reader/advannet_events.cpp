@@ -31,6 +31,13 @@ std::optional<std::int64_t> stamp(std::string_view text) {
   return value && *value > 0 && *value <= kMaxStampMs ? value : std::nullopt;
 }
 
+// A finite number: whole in every capture, which is quick to read; a fraction would do no harm.
+std::optional<double> measurement(std::string_view text) {
+  if (const auto whole = number<std::int32_t>(text)) return *whole;
+  const auto value = number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 // A property value: one text or several, separated by commas.
 struct Values {
   std::string_view all;
@@ -79,7 +86,7 @@ struct Item {
 };
 
 std::int16_t rssi_of(std::string_view text) {
-  const auto dbm = number<double>(text);  // whole numbers in every capture; a fraction would do no harm
+  const auto dbm = measurement(text);
   if (!dbm || !(std::abs(*dbm) < 1000.0)) return TagRead::kNoRssi;
   return static_cast<std::int16_t>(std::lround(*dbm));
 }
@@ -89,8 +96,7 @@ TagRead make_read(const Epc& epc, const Item& item, std::size_t i, std::size_t n
   read.epc = epc;
   read.port = number<std::uint8_t>(item.port.at(i, n)).value_or(0);
   read.rssi_dbm = rssi_of(item.rssi.at(i, n));
-  if (const auto phase = number<double>(item.phase.at(i, n)); phase && std::isfinite(*phase))
-    read.phase_deg = *phase;
+  read.phase_deg = measurement(item.phase.at(i, n));
   read.frequency_khz = number<std::uint32_t>(item.frequency.at(i, n)).value_or(0);
   read.read_count = std::max(1U, number<std::uint32_t>(item.count.at(i, n)).value_or(1));
   return read;
@@ -132,6 +138,8 @@ void read_item(XmlScanner& xml, std::optional<std::int64_t> message_ms, AdvanNet
       item.hex_epc = xml.leaf_text();
     else if (name == "ts" && item.time.empty())
       item.time = xml.leaf_text();
+    else
+      (void)xml.skip_leaf();  // false: it has children, the walk goes into them
   }
   add_reads(item, message_ms, out);
 }

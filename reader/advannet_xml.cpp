@@ -112,6 +112,14 @@ XmlScanner::Token XmlScanner::open_tag() {
 }
 
 XmlScanner::Token XmlScanner::close_tag() {
+  if (depth_ != 0) {  // nearly always exactly the name that is open
+    const std::string_view open = stack_[depth_ - 1];
+    if (static_cast<std::size_t>(end_ - at_) > open.size() && at_[open.size()] == '>' &&
+        std::memcmp(at_, open.data(), open.size()) == 0) {
+      at_ += open.size() + 1;
+      return close_top();
+    }
+  }
   const std::string_view name = take_name();
   skip_blanks();
   if (at_ == end_ || *at_ != '>') return fail("has a broken end tag");
@@ -187,7 +195,30 @@ std::string_view XmlScanner::take_name() {
   return {from, static_cast<std::size_t>(at_ - from)};
 }
 
+// <name>text</name> with the start tag already taken: by far the most frequent shape.
+bool XmlScanner::take_leaf(std::string_view& text) {
+  if (empty_element_ || depth_ == 0) return false;
+  const std::string_view open = stack_[depth_ - 1];
+  const char* stop = at_;
+  if (stop != end_ && *stop != '<')
+    stop = static_cast<const char*>(std::memchr(at_, '<', static_cast<std::size_t>(end_ - at_)));
+  if (stop == nullptr || static_cast<std::size_t>(end_ - stop) < open.size() + 3) return false;
+  if (stop[1] != '/' || stop[open.size() + 2] != '>' || std::memcmp(stop + 2, open.data(), open.size()) != 0)
+    return false;
+  text = {at_, static_cast<std::size_t>(stop - at_)};
+  at_ = stop + open.size() + 3;
+  --depth_;
+  return true;
+}
+
+bool XmlScanner::skip_leaf() {
+  std::string_view text;
+  return take_leaf(text);
+}
+
 std::string_view XmlScanner::leaf_text() {
+  std::string_view only;
+  if (take_leaf(only)) return trim(only);
   const std::size_t inside = depth_;
   std::string_view first;
   bool have = false;

@@ -31,6 +31,9 @@ class XmlScanner {
   // goes on behind its close. Of an element with children or several pieces of text, the first piece. On
   // error the next next() answers it.
   std::string_view leaf_text();
+  // Right after open: if the element holds nothing but text, steps behind its close and is true; else does
+  // nothing. Quick, for elements nobody wants to look at.
+  bool skip_leaf();
 
   [[nodiscard]] std::string_view name() const { return name_; }
   [[nodiscard]] std::string_view text() const { return text_; }
@@ -43,6 +46,7 @@ class XmlScanner {
   Token open_tag();
   Token close_tag();
   Token close_top();
+  bool take_leaf(std::string_view& text);
   Token cdata();
   bool skip_past(std::string_view end, std::string_view problem);
   bool skip_attributes(bool& empty_element);
