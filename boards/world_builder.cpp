@@ -48,6 +48,7 @@ mocks::SimDepthOptions depth_options(const Scene& scene) {
   options.max_m = scene.camera.max_m;
   options.period = hal::from_seconds(1.0 / scene.camera.rate_hz);
   options.noise_per_m = scene.camera.noise;
+  options.far_as_max = true;  // an open hall is free, not unseen
   return options;
 }
 

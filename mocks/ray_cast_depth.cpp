@@ -163,6 +163,7 @@ void SimDepthCamera::render(const hal::Pose& body) {
   for (const Box& box : world_->obstacles)
     if (contains(box, camera.position_world)) return;
   if (camera.position_world.z <= 0.0) return;
+  std::fill(reciprocal_.begin(), reciprocal_.end(), far_reciprocal());
   draw_plane(camera, 0.0);
   if (options_.ceiling_m) draw_plane(camera, *options_.ceiling_m);
   for (const Box& box : world_->obstacles) draw_box(camera, box);
@@ -235,12 +236,20 @@ void SimDepthCamera::draw_face(const std::array<hal::Vec3, 4>& corners) {
   }
 }
 
+// Reciprocal depth of a pixel that sees nothing within reach; 0 is unknown.
+float SimDepthCamera::far_reciprocal() const {
+  return options_.far_as_max ? static_cast<float>(1.0 / std::min(model_.max_m, kLongest_m)) : 0.0F;
+}
+
 void SimDepthCamera::disturb() {
-  if (options_.noise_per_m > 0.0)
+  if (options_.noise_per_m > 0.0) {
+    const float far = far_reciprocal();
     for (float& r : reciprocal_)
       // depth + k depth^2 n, to first order in the reciprocal: 1/depth - k n.
-      if (r > 0.0F)
-        r = std::max(r - static_cast<float>(options_.noise_per_m * quick_normal(random_.next())), 1e-6F);
+      if (r > far)
+        r = std::max(r - static_cast<float>(options_.noise_per_m * quick_normal(random_.next())),
+                     std::max(far, 1e-6F));
+  }
   if (options_.speckle_share > 0.0)
     for (float& r : reciprocal_)
       if (random_.chance(options_.speckle_share)) r = 0.0F;

@@ -25,10 +25,13 @@ struct SimDepthOptions {
   hal::Duration latency{};          // from exposure to delivery, shorter than the period
   hal::Pose mounting;               // camera in the body frame; looks along its +x
   std::optional<double> ceiling_m;  // height of a ceiling, if there is one
-  bool metres = false;              // float metres instead of uint16 millimetres
-  double noise_per_m = 0.0;         // standard deviation at depth z is noise_per_m z^2; D435 about 0.002
-  double speckle_share = 0.0;       // share of pixels unknown, drawn anew for every frame
-  double dead_share = 0.0;          // share of pixels unknown for ever
+  // What nothing within max_m reads as: the maximum (eq. 3.1 of the thesis: "no point" has the maximum
+  // possible value), or unknown, as a bare RealSense has it.
+  bool far_as_max = false;
+  bool metres = false;         // float metres instead of uint16 millimetres
+  double noise_per_m = 0.0;    // standard deviation at depth z is noise_per_m z^2; D435 about 0.002
+  double speckle_share = 0.0;  // share of pixels unknown, drawn anew for every frame
+  double dead_share = 0.0;     // share of pixels unknown for ever
 };
 
 enum class DepthFault : std::uint8_t {
@@ -60,6 +63,7 @@ class SimDepthCamera final : public hal::DepthSource {
   void draw_plane(const Camera& camera, double height_m);
   void draw_box(const Camera& camera, const Box& box);
   void draw_face(const std::array<hal::Vec3, 4>& corners_camera);
+  [[nodiscard]] float far_reciprocal() const;
   void disturb();
   void convert();
   [[nodiscard]] hal::DepthFrame frame() const;

@@ -200,6 +200,25 @@ TEST_F(SimDepthCameraTest, LosesTheSharesOfPixelsItWasToldTo) {
   EXPECT_NEAR(static_cast<double>(lost) / 4800.0, 0.145, 0.025);
 }
 
+TEST_F(SimDepthCameraTest, NothingWithinReachIsUnknownOrTheMaximum) {
+  SimDepthOptions options = options_;
+  options.noise_per_m = 0.01;
+  const auto ahead = [&](SimDepthCamera& camera, Instant now) {
+    const auto frame = camera.poll(now);
+    return std::get<std::span<const float>>((*frame)->pixels)[20 * 80 + 40];
+  };
+  SimDepthCamera bare(world_, body_, options, 1);
+  EXPECT_EQ(ahead(bare, Instant{}), 0.0F);
+  options.far_as_max = true;
+  SimDepthCamera filled(world_, body_, options, 1);
+  EXPECT_NEAR(ahead(filled, Instant{}), options.max_m, 1e-4);
+  filled.set_fault(DepthFault::blind);
+  EXPECT_EQ(ahead(filled, Instant{} + 100ms), 0.0F);
+  filled.set_fault(DepthFault::none);
+  world_.obstacles.push_back({{-1.0, -1.0, 0.0}, {1.0, 1.0, 4.0}});
+  EXPECT_EQ(ahead(filled, Instant{} + 200ms), 0.0F) << "a covered lens sees nothing";
+}
+
 TEST_F(SimDepthCameraTest, FaultsLookLikeTheirCause) {
   world_.obstacles.push_back({{3.0, -9.0, 0.0}, {3.5, 9.0, 4.0}});
   SimDepthCamera camera(world_, body_, options_, 1);
