@@ -51,6 +51,7 @@ class MemoryInventory final : public InventoryStore {
     for (const auto& [port, reads] : reads_by_port_) totals[port] = {port, reads, 0};
     for (const auto& entry : items_.entries()) ++totals[entry.value.best_port].items;
     std::vector<PortTotal> list;
+    list.reserve(totals.size());
     for (const auto& [port, total] : totals) list.push_back(total);
     return list;
   }
