@@ -57,7 +57,7 @@ std::optional<std::uint32_t> count_from(std::string_view text) {
 
 }  // namespace
 
-HttpServerDigest::HttpServerDigest(std::string realm, std::string user, std::string password,
+HttpServerDigest::HttpServerDigest(std::string realm, std::string user, const std::string& password,
                                    std::uint64_t seed)
     : realm_(std::move(realm)),
       user_(std::move(user)),

@@ -13,7 +13,7 @@ namespace forager::mocks {
 // included, does not get in.
 class HttpServerDigest {
  public:
-  HttpServerDigest(std::string realm, std::string user, std::string password, std::uint64_t seed);
+  HttpServerDigest(std::string realm, std::string user, const std::string& password, std::uint64_t seed);
 
   enum class Verdict : std::uint8_t {
     accepted,

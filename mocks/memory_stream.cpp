@@ -15,7 +15,7 @@ using LengthBytes = std::array<std::byte, sizeof(std::uint32_t)>;
 
 }  // namespace
 
-MemoryStreamPair::MemoryStreamPair(std::string name, MemoryStreamKind kind, std::size_t capacity_bytes)
+MemoryStreamPair::MemoryStreamPair(const std::string& name, MemoryStreamKind kind, std::size_t capacity_bytes)
     : kind_(kind),
       near_(*this, capacity_bytes, name),
       far_(*this, capacity_bytes, name + " (device side)"),

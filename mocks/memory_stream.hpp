@@ -59,7 +59,7 @@ class MemoryStream final : public hal::ByteStream {
 // big for the room left, is lost.
 class MemoryStreamPair {
  public:
-  MemoryStreamPair(std::string name, MemoryStreamKind kind, std::size_t capacity_bytes = 64 * 1024);
+  MemoryStreamPair(const std::string& name, MemoryStreamKind kind, std::size_t capacity_bytes = 64 * 1024);
   MemoryStreamPair(const MemoryStreamPair&) = delete;
   MemoryStreamPair& operator=(const MemoryStreamPair&) = delete;
 

@@ -90,7 +90,9 @@ std::string xml_unescaped(std::string_view text) {
 
 void append_xml_escaped(std::string& out, std::string_view text) {
   for (const char c : text) {
-    std::string_view piece{&c, 1};
+    // XML 1.0 has no way to write control characters.
+    std::string_view piece =
+        static_cast<unsigned char>(c) < 0x20 ? std::string_view("?") : std::string_view(&c, 1);
     for (const auto& [entity, plain] : kEntities)
       if (c == plain) piece = entity;
     out += piece;

@@ -223,7 +223,9 @@ struct Served : testing::Test {
     return config;
   }
   std::string exchange(std::string_view text) {
-    if (!text.empty()) EXPECT_TRUE(line.near().write(std::as_bytes(std::span(text))).has_value());
+    if (!text.empty()) {
+      EXPECT_TRUE(line.near().write(std::as_bytes(std::span(text))).has_value());
+    }
     bench.reader.update(bench.now);
     server.update(bench.now);
     std::string heard(65536, '\0');

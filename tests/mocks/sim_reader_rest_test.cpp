@@ -202,6 +202,7 @@ TEST_F(SimReaderRest, UnknownThingsAreRefusedNeverAnsweredOk) {
         "/devices/AdvanReader-m4-160/start/now", "/system", "/system/os/FactoryReset", "/conf", "/status/x",
         "/devices/AdvanReader-m4-160/readModes[1]"})
     EXPECT_THAT(bench.get(path).body, HasSubstr("<msg>UNKNOWN_OPERATION")) << path;
+  EXPECT_THAT(bench.device_get("%3Cb%3E%01&").body, HasSubstr("<op>&lt;b&gt;?&amp;</op>"));
   EXPECT_THAT(bench.device_put("start", "").body, HasSubstr("UNKNOWN_OPERATION"));
   EXPECT_EQ(bench.reader.status(), SimReader::Status::stopped);
 }
