@@ -399,6 +399,19 @@ TEST(AdvanNetReader, HaltOfADeadReaderEndsInBoundedTime) {
   EXPECT_EQ(rig.driver.link().phase, LinkPhase::closed);
 }
 
+TEST(AdvanNetReader, StartRightAfterAStopOpensAgain) {
+  AdvanNetRig rig;
+  rig.open();
+  rig.driver.stop(rig.now);
+  rig.driver.start(rig.now);
+  rig.run(1s);
+  EXPECT_EQ(rig.driver.link().phase, LinkPhase::open);
+  EXPECT_EQ(rig.fake.status, "RUNNING");
+  rig.read("aaaa0001");
+  rig.run(20ms);
+  EXPECT_EQ(rig.reads.size(), 1U);
+}
+
 TEST(AdvanNetReader, OutputsFollowTheLastWishAndReportRefusalsAtTheNextSet) {
   AdvanNetRig rig;
   auto& lamp = rig.driver.gpo(1);

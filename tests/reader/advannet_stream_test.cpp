@@ -8,6 +8,8 @@
 #include <cstring>
 #include <string>
 
+#include "reader/advannet_events.hpp"
+#include "tests/reader/advannet_sample.hpp"
 #include "tests/reader/allocation_count.hpp"
 
 namespace forager::reader {
@@ -189,10 +191,34 @@ RC_GTEST_PROP(AdvanNetStreamProperty, CuttingChangesNothingAndEveryByteIsAccount
   RC_ASSERT(whole.counters.garbage_lines == pieces.counters.garbage_lines);
   RC_ASSERT(whole.counters.garbage_bytes == pieces.counters.garbage_bytes);
   RC_ASSERT(whole.counters.bad_headers == pieces.counters.bad_headers);
-  AdvanNetStream ending;
   const auto& c = pieces.counters;
   RC_ASSERT(c.frame_bytes + c.blank_bytes + c.garbage_bytes <= c.bytes);
   if (!pieces.failed) RC_ASSERT(c.bytes == bytes.size());
+}
+
+// Reads of a sequence of messages, however TCP cuts and joins them on the way.
+RC_GTEST_PROP(AdvanNetStreamProperty, CutsAndJoinsGiveTheSameReads, ()) {
+  const auto sizes = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 4));
+  std::string bytes;
+  std::vector<std::string> wanted;
+  for (const int size : sizes) {
+    std::string items;
+    for (int i = 0; i < size; ++i) {
+      wanted.push_back("bd01" + std::to_string(1000 + wanted.size()));
+      items += test::advannet_item(wanted.back(), 1779868346683,
+                                   "<prop>RSSI:-60</prop><prop>ANTENNA_PORT:1</prop>");
+    }
+    bytes += test::advannet_frame(test::advannet_inventory(items));
+  }
+  const auto cuts = *rc::gen::nonEmpty(
+      rc::gen::container<std::vector<std::size_t>>(rc::gen::inRange<std::size_t>(1, 2000)));
+  std::vector<std::string> got;
+  AdvanNetMessage message;
+  for (const std::string& body : feed(bytes, cuts).bodies) {
+    RC_ASSERT(decode_advannet_message(body, message).has_value());
+    for (const TagRead& read : message.reads) got.push_back(read.epc.hex());
+  }
+  RC_ASSERT(got == wanted);
 }
 
 TEST(AdvanNetStream, AfterAResetEveryByteIsAccountedFor) {
