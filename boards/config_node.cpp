@@ -8,8 +8,6 @@
 #include <iterator>
 #include <optional>
 
-#define TOML_EXCEPTIONS 0
-#define TOML_ENABLE_FORMATTERS 0
 #include <toml++/toml.h>
 
 namespace forager::boards {
@@ -145,14 +143,13 @@ std::string_view ConfigNode::kind() const {
 }
 
 Result<ConfigNode> parse_config(std::string_view text, const std::string& file) {
-  auto parsed = toml::parse(text, file);
-  if (!parsed) {
-    const auto& error = parsed.error();
+  try {
+    return convert(toml::parse(text, file), file, 0);
+  } catch (const toml::parse_error& error) {
     return fail(ErrorCode::protocol, file,
                 fmt::format("line {}, column {}", error.source().begin.line, error.source().begin.column),
                 std::string(error.description()), "The file must be TOML 1.0.");
   }
-  return convert(parsed.table(), file, 0);
 }
 
 Result<ConfigNode> load_config(const std::string& path) { return load(path, 0); }

@@ -55,11 +55,16 @@ class Mission final : public Run {
   void update(hal::Instant now) override {
     devices_->advance(now);
     const Stopwatch stopwatch(options_.counter, loop_ticks_);
-    loop_.update(now);
+    if (loop_.done())
+      reader_.update(now);  // it still owes the reader its stop
+    else
+      loop_.update(now);
     ended_ = now;
   }
   void halt() noexcept override { loop_.halt(); }
-  bool done() const override { return loop_.done() && reader_.idle(); }
+  bool done() const override {
+    return loop_.done() && (reader_.idle() || ended_ - loop_.status().phase_since > kStopAllowance);
+  }
   const Scene& scene() const override { return scene_; }
   const flight::MissionStatus& status() const override { return loop_.status(); }
   const reader::LinkStatus& reader_link() const override { return reader_.link(); }
@@ -110,6 +115,7 @@ class Mission final : public Run {
 
  private:
   static constexpr std::uint8_t kLampLine = 1;
+  static constexpr hal::Duration kStopAllowance = std::chrono::seconds(10);  // for the reader to be told to stop
 
   [[nodiscard]] std::size_t tag_count() const {
     return devices_->world() != nullptr ? devices_->world()->tags.size() : 4096;
