@@ -20,6 +20,19 @@ constexpr hal::Duration kLookAhead = std::chrono::milliseconds(250);
 
 std::string_view view(const fmt::memory_buffer& line) { return {line.data(), line.size()}; }
 
+std::string_view landing_text(EndReason why) {
+  switch (why) {
+    case EndReason::no_new_tags:
+      return "window after window without a new tag";
+    case EndReason::path_complete:
+      return "the path has been flown";
+    case EndReason::time_limit:
+      return "the time for it is over";
+    default:
+      return "the policy wants to land";
+  }
+}
+
 }  // namespace
 
 RobotLoop::RobotLoop(RobotLoopConfig config, const RobotDevices& devices, Policy& policy)
@@ -205,7 +218,7 @@ void RobotLoop::decide(hal::Instant now) {
                                .step_m = next.length_m,
                                .new_tags = window.new_tags});
   note_window(window, now);
-  if (next.kind == DecisionKind::land) return start_landing(next.end, to_string(next.end), now);
+  if (next.kind == DecisionKind::land) return start_landing(next.end, landing_text(next.end), now);
   begin_step(next, now);
 }
 
