@@ -104,7 +104,7 @@ class Mission final : public Run {
     s.decisions = status.decisions.size();
     s.windows = status.window;
     s.end = status.end;
-    s.detail = status.detail;
+    if (status.detail != to_string(status.end)) s.detail = status.detail;
     s.reader_losses = reader_.link().losses;
     s.crashes = devices_->crashes();
     s.battery_fraction = status.battery_fraction;
@@ -115,7 +115,8 @@ class Mission final : public Run {
 
  private:
   static constexpr std::uint8_t kLampLine = 1;
-  static constexpr hal::Duration kStopAllowance = std::chrono::seconds(10);  // for the reader to be told to stop
+  static constexpr hal::Duration kStopAllowance =
+      std::chrono::seconds(10);  // for the reader to be told to stop
 
   [[nodiscard]] std::size_t tag_count() const {
     return devices_->world() != nullptr ? devices_->world()->tags.size() : 4096;

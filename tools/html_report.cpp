@@ -32,6 +32,7 @@ Outcome outcome_of(const ReportData& data) {
     const double step = std::hypot(data.path[i].x - data.path[i - 1].x, data.path[i].y - data.path[i - 1].y);
     if (std::isfinite(step)) outcome.path_m += step;
   }
+  if (data.path_m) outcome.path_m = *data.path_m;
   return outcome;
 }
 

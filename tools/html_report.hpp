@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,7 @@ struct ReportData {
   std::vector<Box> boxes;
   std::vector<Tag> tags;
   std::vector<PathSample> path;  // in time order
+  std::optional<double> path_m;  // length flown, where it is known better than from the samples
   std::vector<flight::Decision> decisions;
   std::vector<TagSample> tags_over_time;  // in time order
   std::vector<Port> ports;

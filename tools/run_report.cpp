@@ -10,19 +10,11 @@ namespace {
 
 std::vector<std::pair<std::string, std::string>> facts_of(const boards::RunSummary& s, double wall_time_s) {
   std::vector<std::pair<std::string, std::string>> facts;
-  facts.emplace_back("tags read", s.tags_present && *s.tags_present > 0
-                                      ? fmt::format("{} of {} ({:.1f} %)", s.tags_read, *s.tags_present,
-                                                    100.0 * static_cast<double>(s.tags_read) /
-                                                        static_cast<double>(*s.tags_present))
-                                      : fmt::format("{}", s.tags_read));
   if (s.other_tags_read > 0) facts.emplace_back("other tags", fmt::format("{}", s.other_tags_read));
-  facts.emplace_back("reads", fmt::format("{}", s.reads));
   facts.emplace_back("time in flight", fmt::format("{:.1f} s of {:.1f} s", s.flight_time_s, s.sim_time_s));
   facts.emplace_back("time on the clock", fmt::format("{:.2f} s", wall_time_s));
-  facts.emplace_back("path", fmt::format("{:.1f} m", s.path_m));
-  facts.emplace_back("decisions", fmt::format("{} in {} windows", s.decisions, s.windows));
-  facts.emplace_back("ended", s.detail.empty() ? std::string(to_string(s.end))
-                                               : fmt::format("{}: {}", to_string(s.end), s.detail));
+  if (!s.detail.empty()) facts.emplace_back("ended because", s.detail);
+  facts.emplace_back("windows", fmt::format("{}", s.windows));
   facts.emplace_back("reader link losses", fmt::format("{}", s.reader_losses));
   facts.emplace_back("contacts and hard landings", fmt::format("{}", s.crashes));
   facts.emplace_back("board", s.board);
@@ -62,6 +54,7 @@ hal::Result<ReportData> report_of(const boards::Run& run, const boards::RunSumma
   for (const auto& point : run.path())
     data.path.push_back(
         {point.at, point.pose_world.position.x, point.pose_world.position.y, point.pose_world.yaw_rad});
+  data.path_m = summary.path_m;
   data.decisions = run.status().decisions;
   data.tags_over_time = watch.samples();
   data.events = watch.events();
