@@ -35,13 +35,13 @@ void read_reader(ConfigReader table, Board& board) {
 
 }  // namespace
 
-hal::Result<Endpoint> endpoint_from(const std::string& text) {
+hal::Result<Endpoint> endpoint_from(const std::string& text, AnyPort any_port) {
   const std::size_t colon = text.rfind(':');
   unsigned port = 0;
   const char* end = text.data() + text.size();
   const bool parsed = colon != std::string::npos && colon > 0 &&
-                      std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
-                      port <= 65535;
+                      std::from_chars(text.data() + colon + 1, end, port).ptr == end &&
+                      port >= (any_port == AnyPort::allowed ? 0U : 1U) && port <= 65535;
   if (!parsed)
     return hal::fail(hal::ErrorCode::invalid_argument, "address", text,
                      fmt::format("\"{}\" is not HOST:PORT", text), "Write for example 192.168.1.50:14550.");

@@ -14,8 +14,11 @@ struct Endpoint {
   std::string host;
   std::uint16_t port = 0;
 };
+// Whether port 0, "the kernel chooses", is an address to listen at.
+enum class AnyPort : std::uint8_t { refused, allowed };
 // "host:port". Errors: invalid_argument.
-[[nodiscard]] hal::Result<Endpoint> endpoint_from(const std::string& text);
+[[nodiscard]] hal::Result<Endpoint> endpoint_from(const std::string& text,
+                                                  AnyPort any_port = AnyPort::refused);
 [[nodiscard]] std::string to_string(const Endpoint& endpoint);
 
 enum class BoardKind : std::uint8_t {

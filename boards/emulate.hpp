@@ -13,12 +13,20 @@
 
 namespace forager::boards {
 
-// An emulated device served on real sockets.
+struct NamedEndpoint {
+  std::string name;  // "mavlink", "rest", "stream", "truth"
+  Endpoint at;
+};
+
+// An emulated device served on real sockets. Port 0 in its options lets the kernel choose; endpoints() and
+// address() tell which it was.
 class EmulatedServer {
  public:
   virtual ~EmulatedServer() = default;
   virtual void update(hal::Instant now) = 0;
-  // Where it can be reached: one line for a person.
+  // Where it listens.
+  [[nodiscard]] virtual std::vector<NamedEndpoint> endpoints() const = 0;
+  // The same as one line for a person.
   [[nodiscard]] virtual std::string address() const = 0;
   // How it stands now: one line for a person.
   [[nodiscard]] virtual std::string status() const = 0;

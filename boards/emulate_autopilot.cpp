@@ -21,6 +21,7 @@ class AutopilotServer final : public EmulatedServer {
       : options_(options),
         world_(build_world(scene, options.seed)),
         line_(std::move(line)),
+        port_(line_->local_port()),
         autopilot_(*line_, autopilot_config(scene, options.seed)) {
     autopilot_.attach(&world_, &journal);
     autopilot_.set_battery_fraction(scene.vehicle.battery_start);
@@ -36,8 +37,12 @@ class AutopilotServer final : public EmulatedServer {
     for (auto& feed : feeds_) feed->update(now);
   }
 
+  std::vector<NamedEndpoint> endpoints() const override {
+    return {{"mavlink", {options_.listen.host, port_}}};
+  }
+
   std::string address() const override {
-    return fmt::format("MAVLink 2 on udp {}:{}", options_.listen.host, line_->local_port());
+    return fmt::format("MAVLink 2 on udp {}:{}", options_.listen.host, port_);
   }
 
   std::string status() const override {
@@ -52,6 +57,7 @@ class AutopilotServer final : public EmulatedServer {
   EmulatedAutopilotOptions options_;
   mocks::World world_;
   std::unique_ptr<hal::UdpPeer> line_;
+  std::uint16_t port_;
   mocks::SimAutopilot autopilot_;
   std::vector<std::unique_ptr<hal::UdpPeer>> listeners_;
   std::vector<std::unique_ptr<mocks::TruthFeed>> feeds_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
 #include <unordered_map>
 #include <utility>
 
@@ -52,6 +53,8 @@ class Mission final : public Run {
         started_(now),
         ended_(now) {}
 
+  ~Mission() override { loop_.abandon(); }
+
   void update(hal::Instant now) override {
     devices_->advance(now);
     const Stopwatch stopwatch(options_.counter, loop_ticks_);
@@ -60,8 +63,12 @@ class Mission final : public Run {
     else
       loop_.update(now);
     ended_ = now;
+    const bool link_up = autopilot_->state().link_up;
+    if (autopilot_up_ && !link_up) ++autopilot_losses_;
+    autopilot_up_ = link_up;
   }
   void halt() noexcept override { loop_.halt(); }
+  void abandon() noexcept override { loop_.abandon(); }
   bool done() const override {
     return loop_.done() && (reader_.idle() || ended_ - loop_.status().phase_since > kStopAllowance);
   }
@@ -106,6 +113,7 @@ class Mission final : public Run {
     s.end = status.end;
     if (status.detail != to_string(status.end)) s.detail = status.detail;
     s.reader_losses = reader_.link().losses;
+    s.autopilot_losses = autopilot_losses_;
     s.crashes = devices_->crashes();
     s.battery_fraction = status.battery_fraction;
     s.ports = ports();
@@ -173,11 +181,19 @@ class Mission final : public Run {
   hal::Instant started_;
   hal::Instant ended_;
   std::uint64_t loop_ticks_ = 0;
+  bool autopilot_up_ = false;
+  std::uint32_t autopilot_losses_ = 0;
 };
 
 hal::Journal& journal_of(const RunOptions& options) {
   static hal::NullJournal none;
   return options.journal != nullptr ? *options.journal : none;
+}
+
+// The read plan is what a person checks first when tags are missing.
+void note_plan(const reader::ReadPlan& plan, hal::Journal& journal, hal::Instant now) {
+  std::istringstream lines(to_string(plan));
+  for (std::string line; std::getline(lines, line);) journal.note(now, "plan", line);
 }
 
 hal::Result<std::unique_ptr<reader::InventoryStore>> open_store(const RunOptions& options) {
@@ -202,6 +218,7 @@ hal::Result<std::unique_ptr<Run>> Run::prepare(const Scene& scene, const Board& 
   if (!autopilot) return hal::fail(std::move(autopilot).error());
   auto store = open_store(options);
   if (!store) return hal::fail(std::move(store).error());
+  note_plan(scene.read_plan, journal_of(options), now);
   return std::make_unique<Mission>(scene, board, options, std::move(*devices), std::move(*autopilot),
                                    std::move(*store), journal_of(options), now);
 }

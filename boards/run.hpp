@@ -44,11 +44,15 @@ class Run {
   // unsupported.
   [[nodiscard]] static hal::Result<std::unique_ptr<Run>> prepare(const Scene& scene, const Board& board,
                                                                  const RunOptions& options, hal::Instant now);
+  // A run that is not done is abandoned.
   virtual ~Run() = default;
 
   virtual void update(hal::Instant now) = 0;
   // Asks to land and end; the run goes on until it is done.
   virtual void halt() noexcept = 0;
+  // For a caller whose update() fails again and again: the vehicle, if it is ours, is told at once to land. The
+  // reader is told to stop; done() when it has heard, or after a while.
+  virtual void abandon() noexcept = 0;
   [[nodiscard]] virtual bool done() const = 0;
 
   [[nodiscard]] virtual const Scene& scene() const = 0;

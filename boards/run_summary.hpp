@@ -35,8 +35,9 @@ struct RunSummary {
   std::size_t decisions = 0;
   std::uint32_t windows = 0;
   flight::EndReason end = flight::EndReason::none;
-  std::string detail;  // why, in words
-  std::uint32_t reader_losses = 0;
+  std::string detail;               // why, in words
+  std::uint32_t reader_losses = 0;  // times the link was lost
+  std::uint32_t autopilot_losses = 0;
   std::uint32_t crashes = 0;
   std::optional<double> battery_fraction;
   std::vector<PortSummary> ports;

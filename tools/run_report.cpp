@@ -15,7 +15,8 @@ std::vector<std::pair<std::string, std::string>> facts_of(const boards::RunSumma
   facts.emplace_back("time on the clock", fmt::format("{:.2f} s", wall_time_s));
   if (!s.detail.empty()) facts.emplace_back("ended because", s.detail);
   facts.emplace_back("windows", fmt::format("{}", s.windows));
-  facts.emplace_back("reader link losses", fmt::format("{}", s.reader_losses));
+  facts.emplace_back("link losses",
+                     fmt::format("reader {}, autopilot {}", s.reader_losses, s.autopilot_losses));
   facts.emplace_back("contacts and hard landings", fmt::format("{}", s.crashes));
   facts.emplace_back("board", s.board);
   return facts;
