@@ -135,9 +135,10 @@ std::optional<double> Stigmergy::free_heading(const Observation& seen) const {
   const bool pulled = recent_pull_world_ != hal::Vec3{};
   const double wanted = pulled ? std::atan2(recent_pull_world_.y, recent_pull_world_.x) : along;
   const double first_side = hal::angle_difference(along, wanted) < 0.0 ? -1.0 : 1.0;
-  for (double turn = 0.0; turn <= hal::kPi; turn += config_.blocked_sector_rad)
+  const int sectors = static_cast<int>(hal::kPi / config_.blocked_sector_rad);
+  for (int i = 0; i <= sectors; ++i)
     for (const double side : {first_side, -first_side}) {
-      const double heading = hal::wrap_pi(wanted + side * turn);
+      const double heading = hal::wrap_pi(wanted + side * i * config_.blocked_sector_rad);
       if (!known_blocked(seen, heading)) return heading;
     }
   return std::nullopt;
