@@ -68,6 +68,7 @@ class SimReader final : public HttpHandler {
 
   // Lines to the event stream; see SimReaderStreams.
   [[nodiscard]] SimReaderStreams& streams() { return streams_; }
+  [[nodiscard]] const SimReaderStreams& streams() const { return streams_; }
 
   // --- physics -----------------------------------------------------------------------------------------
   // Input line 1..4; a change is told to the stream clients. Other lines are ignored.

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/cli_style.hpp"
+#include "tools/cmd_emulate.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_run.hpp"
 
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   int exit_code = kExitDone;
   add_run_command(app, exit_code);
   add_report_command(app, exit_code);
+  add_emulate_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
