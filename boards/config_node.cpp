@@ -25,7 +25,7 @@ Result<ConfigNode> convert(const toml::node& node, const std::string& file, int 
   out.file = file;
   out.line = node.source().begin.line;
   if (depth > kMaxDepth)
-    return fail(ErrorCode::protocol, file, fmt::format("line {}", out.line), "nested too deeply",
+    return fail(ErrorCode::invalid_argument, file, fmt::format("line {}", out.line), "nested too deeply",
                 "Flatten the tables.");
   if (const auto* table = node.as_table()) {
     ConfigNode::Table members;
@@ -86,7 +86,7 @@ Result<std::string> slurp(const std::string& path) {
     const int number = is_directory ? EISDIR : errno;
     const ErrorCode code = number == EACCES ? ErrorCode::permission : ErrorCode::not_present;
     return fail(code, path, "read file", "cannot be read",
-                "Check the path; scenes are listed by 'ls scenes/*.toml'.", number);
+                is_directory ? "It is a folder: name a file in it." : "Check the path.", number);
   }
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
@@ -146,7 +146,7 @@ Result<ConfigNode> parse_config(std::string_view text, const std::string& file) 
   try {
     return convert(toml::parse(text, file), file, 0);
   } catch (const toml::parse_error& error) {
-    return fail(ErrorCode::protocol, file,
+    return fail(ErrorCode::invalid_argument, file,
                 fmt::format("line {}, column {}", error.source().begin.line, error.source().begin.column),
                 std::string(error.description()), "The file must be TOML 1.0.");
   }

@@ -31,12 +31,13 @@ struct ConfigNode {
   [[nodiscard]] std::string_view kind() const;  // "a table", "a string", ...
 };
 
-// Parses TOML 1.0. Errors: protocol (not TOML; the detail has line and column), unsupported (a date or time).
+// Parses TOML 1.0. Errors: invalid_argument (not TOML; the operation has line and column), unsupported (a
+// date or time).
 [[nodiscard]] hal::Result<ConfigNode> parse_config(std::string_view text, const std::string& file);
 
 // Reads a file and, when it has a top-level key `base = "other.toml"` (relative to it), lays it over that
 // file: tables are merged key by key, everything else (arrays included) is replaced. Errors: not_present,
-// permission, io, protocol, invalid_argument (a chain of more than eight bases).
+// permission, unsupported, invalid_argument (not TOML, or a chain of more than eight bases).
 [[nodiscard]] hal::Result<ConfigNode> load_config(const std::string& path);
 
 }  // namespace forager::boards

@@ -18,8 +18,9 @@ std::string allowed_text(Range allowed) {
 
 }  // namespace
 
-ConfigReader::ConfigReader(const ConfigNode* node, std::string path, ConfigIssue& issue)
-    : node_(node), path_(std::move(path)), issue_(&issue) {
+ConfigReader::ConfigReader(const ConfigNode* node, std::string path, ConfigIssue& issue,
+                           const ConfigNode* around)
+    : node_(node), nearest_(node != nullptr ? node : around), path_(std::move(path)), issue_(&issue) {
   if (node_ == nullptr) return;
   node_->used = true;
   if (node_->table() == nullptr) {
@@ -34,7 +35,11 @@ ConfigReader::ConfigReader(const ConfigNode* node, std::string path, ConfigIssue
   }
 }
 
-bool ConfigReader::has(std::string_view key) const { return node_ != nullptr && node_->find(key) != nullptr; }
+bool ConfigReader::has(std::string_view key) const {
+  if (node_ == nullptr) return false;
+  node_->asked.emplace_back(key);
+  return node_->find(key) != nullptr;
+}
 
 const ConfigNode* ConfigReader::take(std::string_view key) {
   if (node_ == nullptr || *issue_) return nullptr;
@@ -47,7 +52,7 @@ const ConfigNode* ConfigReader::take(std::string_view key) {
 void ConfigReader::complain(std::string_view key, std::string detail, std::string mend) {
   if (*issue_) return;
   const ConfigNode* at = node_ == nullptr ? nullptr : node_->find(key);
-  if (at == nullptr) at = node_;
+  if (at == nullptr) at = nearest_;
   *issue_ = hal::Error{hal::ErrorCode::invalid_argument,
                        at == nullptr ? std::string{} : at->where(),
                        path_.empty() ? std::string(key) : fmt::format("[{}] {}", path_, key),
@@ -191,7 +196,7 @@ std::vector<std::vector<double>> ConfigReader::points(std::string_view key, std:
 }
 
 ConfigReader ConfigReader::table(std::string_view key) {
-  return {take(key), path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key), *issue_};
+  return {take(key), path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key), *issue_, nearest_};
 }
 
 std::vector<ConfigReader> ConfigReader::tables(std::string_view key) {

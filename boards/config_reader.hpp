@@ -26,8 +26,9 @@ using ConfigIssue = std::optional<hal::Error>;
 // that no getter asked for are found by check_unused().
 class ConfigReader {
  public:
-  // `node` may be null: an absent table, all fallbacks.
-  ConfigReader(const ConfigNode* node, std::string path, ConfigIssue& issue);
+  // `node` may be null: an absent table, all fallbacks; then `around` says where it is missed.
+  ConfigReader(const ConfigNode* node, std::string path, ConfigIssue& issue,
+               const ConfigNode* around = nullptr);
 
   [[nodiscard]] bool present() const { return node_ != nullptr; }
   [[nodiscard]] bool has(std::string_view key) const;
@@ -62,6 +63,7 @@ class ConfigReader {
                                                 std::size_t size);
 
   const ConfigNode* node_;
+  const ConfigNode* nearest_ = nullptr;  // the table itself, or the nearest one around it that is there
   std::string path_;
   ConfigIssue* issue_;
 };

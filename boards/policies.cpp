@@ -20,6 +20,7 @@ flight::StigmergyConfig stigmergy_config(const Scene& scene) {
   config.significance = mission.significance;
   config.winner_takes_all = mission.winner_takes_all;
   config.memory = mission.memory;
+  config.memory_half_life_s = mission.memory_half_life_s;
   return config;
 }
 

@@ -10,6 +10,7 @@ flight::RobotLoopConfig robot_config(const Scene& scene, std::size_t expected_ta
   config.expected_tags = expected_tags + 64;
   config.takeoff_height_m = scene.vehicle.altitude_m;
   config.guard = scene.guard;
+  config.settle = mission.settle;
   config.step.speed_m_s = mission.speed_m_s;
   config.step.arrival_m = mission.arrival_m;
   config.step.arrival_yaw_rad = mission.arrival_yaw_rad;
@@ -22,6 +23,9 @@ flight::RobotLoopConfig robot_config(const Scene& scene, std::size_t expected_ta
   config.limits.flight_time = mission.time_limit;
   config.limits.battery_reserve = mission.battery_reserve;
   config.limits.reader_allowance = scene.links.reader_allowance;
+  config.limits.autopilot_allowance = scene.links.autopilot_allowance;
+  config.limits.pose_allowance = scene.links.pose_allowance;
+  config.limits.store_allowance = scene.links.store_allowance;
   return config;
 }
 

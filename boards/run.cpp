@@ -56,21 +56,25 @@ class Mission final : public Run {
   ~Mission() override { loop_.abandon(); }
 
   void update(hal::Instant now) override {
+    ended_ = now;
     devices_->advance(now);
     const Stopwatch stopwatch(options_.counter, loop_ticks_);
     if (loop_.done())
       reader_.update(now);  // it still owes the reader its stop
     else
       loop_.update(now);
-    ended_ = now;
     const bool link_up = autopilot_->state().link_up;
     if (autopilot_up_ && !link_up) ++autopilot_losses_;
     autopilot_up_ = link_up;
   }
   void halt() noexcept override { loop_.halt(); }
-  void abandon() noexcept override { loop_.abandon(); }
+  void abandon() noexcept override {
+    if (!abandoned_) abandoned_ = ended_;
+    loop_.abandon();
+  }
   bool done() const override {
-    return loop_.done() && (reader_.idle() || ended_ - loop_.status().phase_since > kStopAllowance);
+    const hal::Instant since = abandoned_.value_or(loop_.status().phase_since);
+    return loop_.done() && (reader_.idle() || ended_ - since > kStopAllowance);
   }
   const Scene& scene() const override { return scene_; }
   const flight::MissionStatus& status() const override { return loop_.status(); }
@@ -180,6 +184,7 @@ class Mission final : public Run {
   flight::RobotLoop loop_;
   hal::Instant started_;
   hal::Instant ended_;
+  std::optional<hal::Instant> abandoned_;
   std::uint64_t loop_ticks_ = 0;
   bool autopilot_up_ = false;
   std::uint32_t autopilot_losses_ = 0;

@@ -50,8 +50,8 @@ class Run {
   virtual void update(hal::Instant now) = 0;
   // Asks to land and end; the run goes on until it is done.
   virtual void halt() noexcept = 0;
-  // For a caller whose update() fails again and again: the vehicle, if it is ours, is told at once to land. The
-  // reader is told to stop; done() when it has heard, or after a while.
+  // For a caller whose update() fails again and again: the vehicle, if it is ours, is told at once to land.
+  // The reader is told to stop; done() when it has heard, or after a while.
   virtual void abandon() noexcept = 0;
   [[nodiscard]] virtual bool done() const = 0;
 

@@ -19,6 +19,18 @@ constexpr std::array<std::pair<PolicyKind, std::string_view>, 5> kPolicies{{
     {PolicyKind::random_walk, "random_walk"},
 }};
 
+// The name becomes part of a file name.
+void read_name(ConfigReader& about, Scene& scene) {
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+  about.require("name", "a short name, such as name = \"4A\"");
+  scene.name = about.text("name", "");
+  if (scene.name.empty() || scene.name.size() > 40 || scene.name.front() == '.' ||
+      scene.name.find_first_not_of(kAllowed) != std::string::npos)
+    about.complain("name", fmt::format("is \"{}\"", scene.name),
+                   "Allowed: up to 40 letters, digits, '-', '_' and '.', not beginning with '.'.");
+  scene.title = about.text("title", scene.name);
+}
+
 }  // namespace
 
 std::string_view to_string(PolicyKind kind) {
@@ -44,9 +56,7 @@ hal::Result<Scene> read_scene(const ConfigNode& root, const std::string& file) {
   Scene scene;
   scene.file = file;
   ConfigReader about = top.table("scene");
-  about.require("name", "a short name, such as name = \"4A\"");
-  scene.name = about.text("name", "");
-  scene.title = about.text("title", scene.name);
+  read_name(about, scene);
   scene.vehicle = read_vehicle(top.table("vehicle"));
   scene.camera = read_camera(top.table("camera"));
   scene.localisation = read_localisation(top.table("localisation"));

@@ -59,6 +59,7 @@ struct SceneMission {
   double arrival_m = 0.2;
   double arrival_yaw_rad = 0.26;
   int tries = 5;
+  hal::Duration settle{};                   // between arriving and listening: reads of the way come late
   std::optional<hal::Duration> time_limit;  // from take-off
   double battery_reserve = 0.2;             // 0..1
   reader::ShareRule share = reader::ShareRule::first_heard;

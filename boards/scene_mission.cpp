@@ -42,6 +42,7 @@ SceneMission read_mission(ConfigReader table, const SceneVehicle& vehicle) {
                                {"stigmergy", "static", "dead_reckoning", "stop_and_rotate", "random_walk"}))
           .value_or(m.policy);
   m.window = table.duration("window_s", 2s, {0.1, 60.0});
+  m.settle = table.duration("settle_s", 200ms, {0.0, 10.0});
   m.step_m = table.number("step_m", m.step_m, {0.1, 5.0});
   m.speed_m_s = table.number("speed_m_s", m.speed_m_s, {0.05, vehicle.max_speed_m_s});
   m.arrival_m = table.number("arrival_m", m.arrival_m, {0.02, 1.0});

@@ -71,6 +71,9 @@ SceneLinks read_links(ConfigReader table) {
   l.stream_timeout = table.duration("stream_timeout_s", 10s, {5.5, 120.0});
   l.reader_allowance = table.duration("reader_allowance_s", 60s, {1.0, 3600.0});
   l.autopilot_timeout = table.duration("autopilot_timeout_s", 4s, {1.5, 60.0});
+  l.autopilot_allowance = table.duration("autopilot_allowance_s", 30s, {1.0, 3600.0});
+  l.pose_allowance = table.duration("pose_allowance_s", 2s, {0.1, 60.0});
+  l.store_allowance = table.duration("store_allowance_s", 15s, {0.1, 3600.0});
   l.pose_timeout = table.duration("pose_timeout_s", 500ms, {0.1, 10.0});
   l.start_timeout = table.duration("start_timeout_s", 60s, {1.0, 600.0});
   l.deadman = table.duration("deadman_s", 1s, {0.1, 10.0});
