@@ -73,13 +73,16 @@ struct SceneMission {
 };
 
 struct SceneLinks {
-  hal::Duration reader_timeout{};     // REST exchange
-  hal::Duration stream_timeout{};     // silence on the event stream
-  hal::Duration reader_allowance{};   // reader lost for longer: land
-  hal::Duration autopilot_timeout{};  // heartbeat silence
-  hal::Duration pose_timeout{};       // localisation silence in flight: land
-  hal::Duration start_timeout{};      // everything ready and airborne by then
-  hal::Duration deadman{};            // our own heartbeats stop when the loop stalls this long
+  hal::Duration reader_timeout{};       // REST exchange
+  hal::Duration stream_timeout{};       // silence on the event stream
+  hal::Duration reader_allowance{};     // reader lost for longer: land
+  hal::Duration autopilot_timeout{};    // heartbeat silence
+  hal::Duration autopilot_allowance{};  // silent for longer: the mission ends
+  hal::Duration pose_timeout{};         // localisation silent or jumping for longer is bad
+  hal::Duration pose_allowance{};       // bad for longer: land
+  hal::Duration store_allowance{};      // inventory refuses for longer: land
+  hal::Duration start_timeout{};        // everything ready and airborne by then
+  hal::Duration deadman{};              // our own heartbeats stop when the loop stalls this long
 };
 
 struct SceneShelf {
