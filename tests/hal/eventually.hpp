@@ -43,7 +43,7 @@ inline std::string read_text(ByteStream& stream, std::size_t size) {
   (void)eventually([&] {
     const auto count = stream.read(room);
     if (!count) {
-      got += "<" + describe(count.error()) + ">";
+      got.append("<").append(describe(count.error())).append(">");
       return true;
     }
     got += text_of(std::span(room).first(*count));
