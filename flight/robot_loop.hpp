@@ -53,18 +53,24 @@ struct RobotLoopConfig {
 // An inventory mission from links to landing: reads -> new-tag weights -> heading -> setpoints. Call update()
 // at 10 Hz or faster; it drives autopilot and reader, and never blocks.
 //
-//   phase      | does each update                         | goes on when            | to
-//   -----------|------------------------------------------|-------------------------|------------------------
-//   waiting    | feeds vision to the autopilot            | reader open, autopilot  | guided; start_timeout:
-//              |                                          | heard, pose good        | done
-//   guided     | asked for GUIDED once                    | the autopilot is in it  | arming; refused: done
-//   arming     | asked to arm once                        | armed                   | takeoff; refused: done
-//   takeoff    | asked to take off once                   | within 0.3 m of height  | listening; refused:
-//   done listening  | holds place; counts new tags             | window over: decide     | stepping, or
-//   landing stepping   | turns, looks, goes forward (StepFlight)  | arrived, blocked, late  | listening
-//   landing    | asked to land; asked again if refused    | on the ground, disarmed | done
-//   silent     | nothing at all                           | autopilot heard again   | landing; allowance:
-//   done done       | nothing; the reader is off, reads stored |                         |
+// clang-format off
+//   phase      | does each update                      | goes on when          | to
+//   -----------|---------------------------------------|-----------------------|--------------------------
+//   waiting    | feeds vision to the autopilot         | reader open, pose     | guided;
+//              |                                       | good, autopilot heard | start_timeout: done
+//   guided     | asked for GUIDED once                 | the autopilot is      | arming; refused: done
+//   arming     | asked to arm once                     | armed                 | takeoff; refused: done
+//   takeoff    | asked to take off once                | within 0.3 m of       | stepping;
+//              |                                       | the height            | refused: landing
+//   stepping   | turns, looks, goes on (StepFlight)    | arrived, blocked,     | listening
+//              |                                       | late                  |
+//   listening  | holds place; counts new tags          | window over: decide   | stepping, or landing
+//   landing    | asked to land; asks again if refused  | on the ground and     | storing
+//              |                                       | disarmed              |
+//   silent     | nothing at all                        | autopilot heard again | landing; allowance: storing
+//   storing    | the reader is off, reads are stored   | stored, or allowance  | done
+//   done       | nothing                               |                       |
+// clang-format on
 //
 // In takeoff, listening and stepping the limits are judged first (mission_limits): a lost reader, pose or
 // store, a low battery, a used-up flight time or a request to stop end in landing; a pilot who takes the
@@ -80,6 +86,10 @@ class RobotLoop final : public hal::Halt {
 
   // Asks to end: at the next update it lands, or stays on the ground.
   void halt() noexcept override { halt_asked_ = true; }
+
+  // The end for a caller who cannot go on with update(): a vehicle that is ours is told at once to land, the
+  // reader to stop, and nothing more is commanded; done() from now on. What the store has not taken is lost.
+  void abandon() noexcept;
 
   [[nodiscard]] bool done() const { return status_.phase == MissionPhase::done; }
   [[nodiscard]] const MissionStatus& status() const { return status_; }

@@ -195,6 +195,17 @@ void RobotLoop::hands_off(hal::Instant now) {
   finish(now);
 }
 
+// Before `guided` the vehicle is not ours yet, from `silent` on not any more.
+void RobotLoop::abandon() noexcept {
+  if (done()) return;
+  const bool ours = status_.phase != MissionPhase::waiting && status_.phase != MissionPhase::silent &&
+                    status_.phase != MissionPhase::storing;
+  if (ours) autopilot_->halt();
+  reader_->halt();
+  if (status_.end == EndReason::none) status_.end = EndReason::halted;
+  status_.phase = MissionPhase::done;
+}
+
 void RobotLoop::finish(hal::Instant now) {
   if (status_.took_off && !status_.touched_down) status_.touched_down = now;
   intake_.drop_window();

@@ -254,7 +254,8 @@ hal::Result<SqliteAccess> access_for(const std::string& path, StoreMode mode) {
     return hal::fail(hal::ErrorCode::invalid_argument, "inventory " + path, "create",
                      "the file exists already", "Give another name, or resume it");
   if (mode == StoreMode::read && !exists)
-    return hal::fail(hal::ErrorCode::not_present, "inventory " + path, "open", "there is no such file");
+    return hal::fail(hal::ErrorCode::not_present, "inventory " + path, "open", "there is no such file",
+                     "Name the inventory.sqlite in the output folder of a run");
   return mode == StoreMode::read ? SqliteAccess::read : SqliteAccess::create;
 }
 

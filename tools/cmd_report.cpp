@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -138,7 +140,9 @@ std::string json_lines(const Contents& contents, bool with_items) {
 int run_report_command(const ReportOptions& options) {
   if (options.json && options.csv == "-")
     return complain_usage("report: --json and --csv - both want stdout. Give --csv a file");
-  const auto contents = load(options.database);
+  std::error_code ignored;
+  const bool folder = std::filesystem::is_directory(options.database, ignored);
+  const auto contents = load(folder ? options.database + "/inventory.sqlite" : options.database);
   if (!contents) return complain(contents.error());
   if (!options.csv.empty()) {
     if (const auto written = write_output(options.csv, reader::to_csv(contents->items)); !written)
@@ -154,7 +158,8 @@ int run_report_command(const ReportOptions& options) {
 void add_report_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command = app.add_subcommand("report", "Show what a run found, from its inventory file");
-  command->add_option("inventory", options->database, "Inventory file that a run wrote")->required();
+  command->add_option("inventory", options->database, "Inventory file that a run wrote, or its folder")
+      ->required();
   command->add_option("--csv", options->csv, "Write the items as CSV to this file, - for stdout");
   command->add_flag("--items", options->items, "List every item");
   command->add_flag("--json", options->json, "JSON lines on stdout: a summary, then the items if asked for");

@@ -9,7 +9,7 @@ class App;
 namespace forager::tools {
 
 struct ReportOptions {
-  std::string database;  // inventory file
+  std::string database;  // inventory file, or the folder of a run
   std::string csv;       // write the items here, "-" for stdout instead of the table; empty: don't
   bool json = false;     // JSON lines on stdout instead of the table
   bool items = false;    // list every item after the summary

@@ -5,18 +5,19 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "boards/run.hpp"
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
+#include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
+#include "tools/run_loop.hpp"
 #include "tools/run_output.hpp"
 #include "tools/run_report.hpp"
 #include "tools/run_watch.hpp"
-#include "tools/stop_signal.hpp"
 
 namespace forager::tools {
 namespace {
@@ -29,6 +30,16 @@ struct Files {
   std::string report, inventory, journal;
 };
 
+constexpr const char* kInventoryTails[] = {"", "-wal", "-shm"};
+
+hal::ErrorCode code_of(const std::error_code& error) {
+  if (error == std::errc::permission_denied || error == std::errc::read_only_file_system)
+    return hal::ErrorCode::permission;
+  if (error == std::errc::not_a_directory || error == std::errc::file_exists)
+    return hal::ErrorCode::not_present;
+  return hal::ErrorCode::io;
+}
+
 // A simulated run may be repeated into the same folder; the inventory of a real place is never overwritten.
 hal::Result<Files> make_files(const RunCommand& command, const boards::Scene& scene,
                               const boards::Board& board) {
@@ -40,19 +51,27 @@ hal::Result<Files> make_files(const RunCommand& command, const boards::Scene& sc
   std::error_code error;
   std::filesystem::create_directories(files.folder, error);
   if (error)
-    return hal::fail(hal::ErrorCode::io, files.folder, "create output folder", "cannot be created",
+    return hal::fail(code_of(error), files.folder, "create output folder", "cannot be created",
                      "Choose another with --output.", error.value());
   files.report = files.folder + "/report.html";
   files.inventory = files.folder + "/inventory.sqlite";
   files.journal = files.folder + "/journal.txt";
-  if (std::filesystem::exists(files.inventory)) {
-    if (board.kind != boards::BoardKind::sim)
-      return hal::fail(hal::ErrorCode::invalid_argument, files.inventory, "create inventory",
-                       "is already there",
-                       "Choose another folder with --output; an inventory is never overwritten.");
-    for (const char* tail : {"", "-wal", "-shm"}) std::filesystem::remove(files.inventory + tail, error);
-  }
+  if (board.kind != boards::BoardKind::sim && std::filesystem::exists(files.inventory, error))
+    return hal::fail(hal::ErrorCode::invalid_argument, files.inventory, "create inventory",
+                     "is already there",
+                     "Choose another folder with --output; an inventory is never overwritten.");
+  for (const char* tail : kInventoryTails) std::filesystem::remove(files.inventory + tail, error);
+  std::filesystem::remove(files.report, error);  // an old page beside a new journal would mislead
   return files;
+}
+
+// A run that could not be put together leaves nothing behind.
+void remove_files(const Files& files) {
+  if (files.folder.empty()) return;
+  std::error_code error;
+  std::filesystem::remove(files.journal, error);
+  for (const char* tail : kInventoryTails) std::filesystem::remove(files.inventory + tail, error);
+  std::filesystem::remove(files.folder, error);  // only if empty
 }
 
 hal::Result<boards::Scene> scene_for(const RunCommand& command) {
@@ -79,43 +98,25 @@ int exit_code_of(const boards::RunSummary& summary) {
   }
 }
 
-double seconds_since(WallClock::time_point start) {
-  return std::chrono::duration<double>(WallClock::now() - start).count();
-}
-
-// The outermost loop: the only one that waits.
-void fly(Run& run, hal::Clock& clock, RunWatch& watch, WallClock::time_point wall_start) {
-  const StopSignal signals;
-  bool told = false;
-  for (hal::Instant next = clock.now(); !run.done(); next += Run::kTick) {
-    clock.sleep_until(next);
-    const hal::Instant now = clock.now();
-    if (StopSignal::raised() && !told) {
-      run.halt();
-      told = true;
-    }
-    run.update(now);
-    watch.update(run, now, seconds_since(wall_start));
-    if (now > next + std::chrono::seconds(1)) next = now;  // the machine stood still: do not hurry after it
-  }
-}
-
+// The page of the run, then its figures on stdout; what can still be written is written.
 int close_run(Run& run, const RunCommand& command, const Files& files, const RunWatch& watch,
               double wall_time_s, hal::Instant ended) {
   const auto summary = run.summary();
   if (!summary) return complain(summary.error());
-  if (!files.folder.empty()) {
-    const auto data = report_of(run, *summary, watch, wall_time_s, ended);
-    if (!data) return complain(data.error());
-    if (auto written = write_output(files.report, render_html_report(*data)); !written)
-      return complain(written.error());
-  }
-  const std::string text =
+  int exit_code = exit_code_of(*summary);
+  std::string text =
       command.json ? summary_json(*summary, wall_time_s) + "\n" : summary_table(*summary, wall_time_s);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  if (!command.json && !files.folder.empty())
-    std::fprintf(stdout, "  %-16s%s\n", "report", files.report.c_str());
-  return exit_code_of(*summary);
+  if (!files.folder.empty()) {
+    auto data = report_of(run, *summary, watch, wall_time_s, ended);
+    const auto written = data ? write_output(files.report, render_html_report(*data))
+                              : hal::Result<>(hal::fail(std::move(data).error()));
+    if (!written)
+      exit_code = complain(written.error());
+    else if (!command.json)
+      text += fmt::format("  {:<16}{}\n", "report", files.report);
+  }
+  if (const auto written = write_output("-", text); !written) return complain(written.error());
+  return exit_code;
 }
 
 }  // namespace
@@ -144,15 +145,19 @@ int run_run_command(const RunCommand& command) {
                            .journal = journal->get(),
                            .journal_wire = command.wire},
                           clock->now());
-  if (!run) return complain(run.error());
+  if (!run) {
+    remove_files(*files);
+    return complain(run.error());
+  }
   const auto wall_start = WallClock::now();
-  fly(**run, *clock, watch, wall_start);
-  const double wall_time_s = seconds_since(wall_start);
+  const auto flown = run_to_end(**run, *clock, watch);
+  const double wall_time_s = std::chrono::duration<double>(WallClock::now() - wall_start).count();
   watch.finish();
+  int exit_code = close_run(**run, command, *files, watch, wall_time_s, clock->now());
   if (!(*journal)->flush())
-    return complain(
+    exit_code = complain(
         {hal::ErrorCode::io, files->journal, "write journal", "cannot be written", "Is the disk full?", 0});
-  return close_run(**run, command, *files, watch, wall_time_s, clock->now());
+  return flown ? exit_code : complain(flown.error());
 }
 
 void add_run_command(CLI::App& app, int& exit_code) {
@@ -160,14 +165,16 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand("run", "Fly a mission: every device emulated, or those of a board file");
   sub->add_option("scene", command->scene, "Scene file, such as scenes/4A.toml")->required();
   sub->add_option("--board", command->board, "'sim' or a board file")->capture_default_str();
-  sub->add_option("--seed", command->seed, "Seed of everything random")->capture_default_str();
+  sub->add_option("--seed", command->seed, "Seed of everything random")
+      ->capture_default_str()
+      ->check(WholeNumber());
   sub->add_option("--policy", command->policy,
                   "Instead of the scene's: stigmergy, static, dead_reckoning, stop_and_rotate, random_walk");
   sub->add_option("--output", command->output, "Folder for report, inventory and journal");
   sub->add_flag("--no-files", command->no_files, "Write no files");
   sub->add_flag("--real-time", command->real_time, "At the pace of the clock instead of as fast as possible");
   sub->add_option("--speed", command->speed, "Real time, this many times as fast (emulated devices only)")
-      ->check(CLI::Range(0.01, 1000.0));
+      ->check(NumberBetween(0.01, 1000.0));
   sub->add_flag("--json", command->json, "JSON lines on stdout; the last one is the summary");
   sub->add_flag("--quiet", command->quiet, "No progress line");
   sub->add_flag("--wire", command->wire, "Bytes of both links into the journal too");

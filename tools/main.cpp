@@ -1,12 +1,32 @@
-#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <unistd.h>
 
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <exception>
+
+#include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_run.hpp"
 
+namespace {
+
+// Started with one of them closed (>&-), the next file opened would take its number, and what is meant for
+// the terminal would go into the inventory.
+void keep_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace forager::tools;
+  keep_standard_descriptors();
+  // Whoever reads our output may go away; that must not end a flight.
+  std::signal(SIGPIPE, SIG_IGN);
   CLI::App app{"RFID tag reads into motion: fly inventory missions, emulate and test their devices",
                "forager"};
   app.set_version_flag("--version", FORAGER_VERSION);
@@ -21,7 +41,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+    if (error.get_exit_code() == 0) return app.exit(error);  // help and version
+    return complain_about_arguments(app, error, argc, argv);
+  } catch (const std::exception& error) {
+    return complain({forager::hal::ErrorCode::io, "forager", "run a command", error.what(), {}, 0});
   }
   return exit_code;
 }

@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 void print_json(const Json& object) {
   const std::string line = object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   std::fwrite(line.data(), 1, line.size(), stdout);
+  std::fflush(stdout);  // whoever follows a run in a pipe wants to see it now
 }
 
 // Windows and decisions are on the map and in the table; the report's list is for what happened besides.
@@ -84,6 +85,11 @@ void RunWatch::print_progress(const boards::Run& run, hal::Instant now, double w
   std::fprintf(stderr, "\r%-100s", one_line(line).c_str());
   std::fflush(stderr);
   line_open_ = true;
+}
+
+void RunWatch::say(std::string_view text) {
+  finish();
+  std::fprintf(stderr, "forager: %s\n", one_line(text).c_str());
 }
 
 void RunWatch::finish() {

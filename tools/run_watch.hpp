@@ -30,6 +30,8 @@ class RunWatch {
   void note(hal::Instant now, std::string_view source, std::string_view text);
   // The run as it stands after an update.
   void update(const boards::Run& run, hal::Instant now, double wall_time_s);
+  // A line to the person at the terminal, on stderr.
+  void say(std::string_view text);
   // Ends the terminal line.
   void finish();
 

@@ -17,6 +17,12 @@ void on_signal(int number) {
   caught = number;
 }
 
+// Under nohup the end of the terminal session is not to end the program.
+bool kept_ignored(int number) {
+  struct sigaction before {};
+  return number == SIGHUP && sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 StopSignal::StopSignal() {
@@ -24,11 +30,13 @@ StopSignal::StopSignal() {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  for (const int number : kSignals) sigaction(number, &action, nullptr);
+  for (const int number : kSignals)
+    if (!kept_ignored(number)) sigaction(number, &action, nullptr);
 }
 
 StopSignal::~StopSignal() {
-  for (const int number : kSignals) std::signal(number, SIG_DFL);
+  for (const int number : kSignals)
+    if (!kept_ignored(number)) std::signal(number, SIG_DFL);
 }
 
 bool StopSignal::raised() { return caught != 0; }

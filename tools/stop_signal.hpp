@@ -3,7 +3,8 @@
 namespace forager::tools {
 
 // Catches SIGINT, SIGTERM and SIGHUP so that a mission can land instead of dying; a second signal of any of
-// them kills the program at once, as if nothing were caught. One per process.
+// them kills the program at once, as if nothing were caught. SIGHUP stays ignored if it was (nohup). One per
+// process.
 class StopSignal {
  public:
   StopSignal();

@@ -23,7 +23,7 @@ ConfigNode parsed(const std::string& text) {
 TEST(Config, SyntaxErrorNamesFileLineAndColumn) {
   const auto node = parse_config("a = 1\nb = = 2\n", "test.toml");
   ASSERT_FALSE(node);
-  EXPECT_EQ(node.error().code, hal::ErrorCode::protocol);
+  EXPECT_EQ(node.error().code, hal::ErrorCode::invalid_argument);
   EXPECT_THAT(describe(node.error()), HasSubstr("test.toml: line 2, column"));
 }
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace forager::tools {
+
+// A whole number from 0 to 2^64 - 1, decimal digits and nothing else: neither "-1" nor "5x" nor "0x10" is
+// taken for something its author may not have meant.
+struct WholeNumber : CLI::Validator {
+  WholeNumber();
+};
+
+// A finite decimal number within the range.
+struct NumberBetween : CLI::Validator {
+  NumberBetween(double low, double high);
+};
+
+// What is wrong with a command line, where, and where help is to be had, on stderr as one line. Gives
+// kExitUsage.
+int complain_about_arguments(const CLI::App& app, const CLI::ParseError& error, int argc,
+                             const char* const* argv);
+
+}  // namespace forager::tools
