@@ -21,13 +21,13 @@ std::string scan(std::string_view document) {
   while (true) {
     switch (xml.next()) {
       case Token::open:
-        line += "(" + std::string(xml.name()) + " ";
+        line.append("(").append(xml.name()).append(" ");
         break;
       case Token::close:
         line += ") ";
         break;
       case Token::text:
-        line += "'" + std::string(xml.text()) + "' ";
+        line.append("'").append(xml.text()).append("' ");
         break;
       case Token::end:
         return line;
@@ -42,7 +42,7 @@ std::string scan(std::string_view document) {
 void write_tree(const pugi::xml_node& node, std::string& line) {
   for (const pugi::xml_node& child : node.children()) {
     if (child.type() == pugi::node_element) {
-      line += "(" + std::string(child.name()) + " ";
+      line.append("(").append(child.name()).append(" ");
       write_tree(child, line);
       line += ") ";
     } else if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) {
@@ -50,7 +50,7 @@ void write_tree(const pugi::xml_node& node, std::string& line) {
       const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
       while (!text.empty() && blank(text.front())) text.remove_prefix(1);
       while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-      line += "'" + std::string(text) + "' ";
+      line.append("'").append(text).append("' ");
     }
   }
 }
