@@ -11,6 +11,7 @@ namespace {
 using hal::Vec3;
 
 constexpr hal::Duration kReopen = std::chrono::seconds(1);
+constexpr hal::Duration kPatience = std::chrono::seconds(2);  // with a teller that says nothing of use
 constexpr unsigned kArmed = 1;
 constexpr unsigned kOnGround = 2;
 
@@ -103,7 +104,18 @@ void TruthFeed::update(hal::Instant now) {
 }
 
 void TruthFollower::update(hal::Instant now) {
-  if (!ready(*stream_, tried_, now)) return;
+  if (!ready(*stream_, tried_, now)) {
+    quiet_since_.reset();
+    return;
+  }
+  if (!quiet_since_) quiet_since_ = now;
+  listen(now);
+  if (now - *quiet_since_ < kPatience) return;
+  stream_->close();
+  tried_.reset();
+}
+
+void TruthFollower::listen(hal::Instant now) {
   for (;;) {
     const auto count = stream_->read(room_);
     if (!count || *count == 0) return;
@@ -122,7 +134,7 @@ void TruthFollower::hear(const MavlinkPeerFrame& frame, hal::Instant now) {
   constexpr std::int64_t kCenturies = 9'000'000'000'000'000;  // the end of the time line, in microseconds
   if (!body || us < 0 || us > kCenturies) return;
   state_ = *body;
-  heard_ = now;
+  heard_ = quiet_since_ = now;
   told_at_ = hal::Instant(std::chrono::microseconds(us));
 }
 

@@ -38,7 +38,9 @@ class TruthFeed {
   std::uint64_t sent_ = 0;
 };
 
-// The other end: the body as last told. Until the first datagram it stands at the start.
+// The other end: the body as last told. Until the first datagram it stands at the start. A line on which
+// nothing of use comes for 2 s is closed and opened again: a socket that keeps to the first that spoke to it
+// hears a teller that was started anew, or that a stranger was ahead of.
 class TruthFollower : public TrueBody {
  public:
   explicit TruthFollower(hal::ByteStream& stream, BodyState start = {}) : stream_(&stream), state_(start) {}
@@ -52,6 +54,7 @@ class TruthFollower : public TrueBody {
   [[nodiscard]] std::optional<hal::Instant> told_at() const { return told_at_; }
 
  private:
+  void listen(hal::Instant now);
   void hear(const MavlinkPeerFrame& frame, hal::Instant now);
 
   hal::ByteStream* stream_;
@@ -60,6 +63,7 @@ class TruthFollower : public TrueBody {
   std::array<std::byte, 2048> room_{};
   std::optional<hal::Instant> heard_;
   std::optional<hal::Instant> told_at_;
+  std::optional<hal::Instant> quiet_since_;
   std::optional<hal::Instant> tried_;
 };
 

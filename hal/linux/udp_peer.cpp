@@ -51,6 +51,8 @@ class UdpSocket final : public UdpPeer {
     }
     auto opened = learns() ? bind_to(addresses_.front()) : bind_and_connect(addresses_.front());
     if (!opened) do_close();
+    // Whoever was told which port the kernel chose must find it again after close() and open().
+    if (opened && learns()) addresses_.front() = local_address_of(fd_.get());
     return opened;
   }
 

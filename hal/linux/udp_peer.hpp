@@ -22,9 +22,9 @@ class UdpPeer : public ByteStream {
 [[nodiscard]] std::unique_ptr<UdpPeer> open_udp_peer(std::string remote_host, std::uint16_t remote_port,
                                                      std::uint16_t local_port = 0);
 
-// Waits at local_host:local_port (empty host: every IPv4 address; port 0: any) and stays `opening` until the
-// first datagram arrives; its sender is the peer from then on. When the peer's machine reports that its port
-// is closed, or after close() and open(), the next sender is learnt.
+// Waits at local_host:local_port (empty host: every IPv4 address; port 0: any, but always the same) and stays
+// `opening` until the first datagram arrives; its sender is the peer from then on. When the peer's machine
+// reports that its port is closed, or after close() and open(), the next sender is learnt.
 [[nodiscard]] std::unique_ptr<UdpPeer> open_udp_listener(std::string local_host, std::uint16_t local_port);
 
 }  // namespace forager::hal

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <deque>
+#include <vector>
+
 #include "hal/random.hpp"
 #include "hal/units.hpp"
 #include "mocks/memory_stream.hpp"
@@ -71,6 +75,86 @@ TEST(TruthFeed, SendsAtItsIntervalAndTheFollowerKnowsWhenItIsDeaf) {
     follower.update(now);
   }
   EXPECT_FALSE(follower.fresh(now, 500ms));
+}
+
+// Keeps to whoever spoke first since it was opened, as a listening UDP socket does.
+class FirstCallerOnly : public hal::ByteStream {
+ public:
+  struct Datagram {
+    int caller;
+    std::vector<std::byte> bytes;
+  };
+  std::deque<Datagram> arrived;
+
+ private:
+  hal::Result<> do_open() override {
+    open_ = true;
+    caller_ = 0;
+    return {};
+  }
+  hal::Result<hal::StreamState> do_poll() override {
+    if (!open_) return hal::StreamState::closed;
+    if (caller_ == 0 && !arrived.empty()) caller_ = arrived.front().caller;
+    return caller_ == 0 ? hal::StreamState::opening : hal::StreamState::open;
+  }
+  hal::Result<std::size_t> do_read(std::span<std::byte> into) override {
+    while (!arrived.empty()) {
+      const Datagram next = std::move(arrived.front());
+      arrived.pop_front();
+      if (next.caller != caller_) continue;
+      std::ranges::copy(next.bytes, into.begin());
+      return next.bytes.size();
+    }
+    return std::size_t{0};
+  }
+  hal::Result<std::size_t> do_write(std::span<const std::byte>) override { return std::size_t{0}; }
+  void do_close() override { open_ = false; }
+  std::string_view do_name() const override { return "first caller only"; }
+
+  bool open_ = false;
+  int caller_ = 0;
+};
+
+std::vector<std::byte> truth_datagram(double x_m, hal::Instant now) {
+  BodyState body;
+  body.pose.position = {x_m, 0, 0};
+  MavlinkPeerPacker packer(255, 250);
+  const auto frame = packer.pack(peer::kOdometry, encode_truth(body, now));
+  return {frame.begin(), frame.end()};
+}
+
+TEST(TruthFeed, TheFollowerHearsATellerThatWasStartedAnew) {
+  FirstCallerOnly line;
+  TruthFollower follower(line);
+  hal::Instant now(1s);
+  const auto tell_for = [&](hal::Duration time, int caller, double x_m) {
+    for (const hal::Instant end = now + time; now < end; now += 20ms) {
+      line.arrived.push_back({caller, truth_datagram(x_m, now)});
+      follower.update(now);
+    }
+  };
+  tell_for(1s, 1, 1.0);
+  EXPECT_NEAR(follower.state().pose.position.x, 1.0, 1e-5);
+  tell_for(5s, 2, 2.0);
+  EXPECT_NEAR(follower.state().pose.position.x, 2.0, 1e-5) << "still waits for the teller that has gone";
+  EXPECT_TRUE(follower.fresh(now, 50ms));
+}
+
+TEST(TruthFeed, AStrangerWhoWasFirstDoesNotKeepTheFollowerDeaf) {
+  FirstCallerOnly line;
+  TruthFollower follower(line);
+  hal::Instant now(1s);
+  for (int i = 0; i < 50; ++i, now += 20ms) {
+    line.arrived.push_back({7, {std::byte{0xFD}, std::byte{9}, std::byte{0}}});
+    follower.update(now);
+  }
+  EXPECT_FALSE(follower.told_at());
+  for (int i = 0; i < 200; ++i, now += 20ms) {
+    line.arrived.push_back({1, truth_datagram(3.0, now)});
+    follower.update(now);
+  }
+  EXPECT_TRUE(follower.fresh(now, 50ms));
+  EXPECT_NEAR(follower.state().pose.position.x, 3.0, 1e-5);
 }
 
 TEST(TruthFeed, TheWireSaysForwardRightDown) {

@@ -201,6 +201,15 @@ TEST(UdpPeer, ListenerLearnsTheNextPeerWhenTheFirstHasGone) {
   EXPECT_EQ("second", read_text(*listener, 1));
 }
 
+TEST(UdpPeer, ListenerThatIsOpenedAgainIsFoundAtTheSamePort) {
+  auto listener = open_udp_listener("127.0.0.1", 0);
+  ASSERT_TRUE(listener->open().has_value());
+  const std::uint16_t port = listener->local_port();
+  listener->close();
+  ASSERT_TRUE(listener->open().has_value());
+  EXPECT_EQ(port, listener->local_port());
+}
+
 TEST(UdpPeer, DropsWhatDoesNotFitTheRoomInsteadOfCuttingIt) {
   auto listener = open_udp_listener("127.0.0.1", 0);
   ASSERT_TRUE(listener->open().has_value());
