@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "boards/emulate.hpp"
@@ -13,6 +14,7 @@ namespace forager::boards {
 namespace {
 
 constexpr hal::Duration kTruthInterval = std::chrono::milliseconds(20);
+constexpr hal::Duration kLongestStep = std::chrono::milliseconds(200);
 
 class AutopilotServer final : public EmulatedServer {
  public:
@@ -33,6 +35,7 @@ class AutopilotServer final : public EmulatedServer {
   }
 
   void update(hal::Instant now) override {
+    now = without_stalls(now);
     autopilot_.update(now);
     for (auto& feed : feeds_) feed->update(now);
   }
@@ -54,7 +57,17 @@ class AutopilotServer final : public EmulatedServer {
   }
 
  private:
+  // A flight controller never stands still, but this process may, on a busy machine. It must not then fly
+  // seconds at once, blind to what waits in its socket: its time stands still as well.
+  hal::Instant without_stalls(hal::Instant now) {
+    if (last_ && now - *last_ > kLongestStep) stalled_ += now - *last_ - kLongestStep;
+    last_ = now;
+    return now - stalled_;
+  }
+
   EmulatedAutopilotOptions options_;
+  std::optional<hal::Instant> last_;
+  hal::Duration stalled_{};
   mocks::World world_;
   std::unique_ptr<hal::UdpPeer> line_;
   std::uint16_t port_;

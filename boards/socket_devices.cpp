@@ -15,6 +15,23 @@
 namespace forager::boards {
 namespace {
 
+// Localisation that knows nothing before the emulated autopilot has said for the first time where it is:
+// silence must not pass for standing at the start.
+class ToldPose final : public hal::PoseSource {
+ public:
+  ToldPose(const mocks::TruthFollower& body, const mocks::SimPoseOptions& options, std::uint64_t seed)
+      : body_(&body), source_(body, options, seed) {}
+
+ private:
+  hal::Result<std::optional<hal::PoseSample>> do_poll(hal::Instant now) override {
+    if (!body_->told_at()) return std::optional<hal::PoseSample>{};
+    return source_.poll(now);
+  }
+
+  const mocks::TruthFollower* body_;
+  mocks::SimPoseSource source_;
+};
+
 // Reader and autopilot behind sockets; camera and localisation computed from where the emulated autopilot
 // says the vehicle really is.
 class SocketDevices final : public DeviceSet {
@@ -55,7 +72,7 @@ class SocketDevices final : public DeviceSet {
   std::unique_ptr<hal::UdpPeer> truth_;
   mocks::TruthFollower body_;
   mocks::SimDepthCamera depth_;
-  mocks::SimPoseSource pose_;
+  ToldPose pose_;
 };
 
 }  // namespace

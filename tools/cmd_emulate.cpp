@@ -85,7 +85,7 @@ void add_shared(CLI::App* sub, const std::shared_ptr<EmulateCommand>& command) {
   sub->add_option("--seed", command->seed, "Seed of everything random, the same as the run's")
       ->capture_default_str();
   sub->add_option("--speed", command->speed, "Real time, this many times as fast, the same as the run's")
-      ->check(CLI::Range(0.01, 1000.0));
+      ->check(CLI::Range(0.01, 100.0));
   sub->add_option("--for", command->for_s, "Stop after so many seconds on the clock")
       ->check(CLI::Range(0.001, 1e9));
   sub->add_flag("--json", command->json, "JSON lines on stdout");
