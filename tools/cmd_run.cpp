@@ -92,6 +92,7 @@ int exit_code_of(const boards::RunSummary& summary) {
     case EndReason::reader_lost:
     case EndReason::pose_lost:
     case EndReason::autopilot_lost:
+    case EndReason::store_failed:
       return kExitFailure;
     default:
       return kExitDone;
