@@ -27,6 +27,7 @@ struct SceneVehicle {
   double max_yaw_rate_rad_s = 1.0;
   double battery_s = 1500.0;   // flight time of a full battery
   double battery_start = 1.0;  // 0..1
+  bool operator==(const SceneVehicle&) const = default;
 };
 
 struct SceneCamera {
@@ -38,12 +39,14 @@ struct SceneCamera {
   double min_m = 0.15;
   double max_m = 7.0;
   double noise = 0.0;  // depth noise: standard deviation is noise * depth^2, 1/m
+  bool operator==(const SceneCamera&) const = default;
 };
 
 struct SceneLocalisation {
   double rate_hz = 30.0;
   double noise_m = 0.003;
   double noise_rad = 0.002;
+  bool operator==(const SceneLocalisation&) const = default;
 };
 
 enum class PolicyKind : std::uint8_t { stigmergy, hover, dead_reckoning, stop_and_rotate, random_walk };
@@ -70,6 +73,7 @@ struct SceneMission {
   std::vector<hal::Vec3> waypoints;  // dead reckoning; z is filled in with the altitude
   std::uint32_t rotate_above = 10;   // stop-and-rotate: new tags in a window that start a rotation
   std::uint32_t rotate_below = 3;    // and that end it
+  bool operator==(const SceneMission&) const = default;
 };
 
 struct SceneLinks {
@@ -83,11 +87,13 @@ struct SceneLinks {
   hal::Duration store_allowance{};      // inventory refuses for longer: land
   hal::Duration start_timeout{};        // everything ready and airborne by then
   hal::Duration deadman{};              // our own heartbeats stop when the loop stalls this long
+  bool operator==(const SceneLinks&) const = default;
 };
 
 struct SceneShelf {
   hal::Vec3 min;
   hal::Vec3 max;
+  bool operator==(const SceneShelf&) const = default;
 };
 struct SceneGroup {
   std::uint32_t tags = 0;
@@ -95,6 +101,7 @@ struct SceneGroup {
   double spread_z_m = 0.5;   // and 0 .. this above it
   bool wanted = true;
   std::vector<hal::Vec3> centres;
+  bool operator==(const SceneGroup&) const = default;
 };
 struct SceneRadio {
   double r0_m = 2.75;
@@ -108,11 +115,13 @@ struct SceneRadio {
   double rician_k_db = 6.0;        // frozen multipath: power of the direct path over the scattered ones
   double occlusion_db = 0.0;       // loss for each shelf crossed
   double rssi_at_1m_dbm = -51.0;
+  bool operator==(const SceneRadio&) const = default;
 };
 struct SceneWorld {
   std::vector<SceneShelf> shelves;
   std::vector<SceneGroup> groups;
   SceneRadio radio;
+  bool operator==(const SceneWorld&) const = default;
 };
 
 // A vehicle, its devices, a task and, off-target, a world.
@@ -128,6 +137,7 @@ struct Scene {
   SceneMission mission;
   SceneLinks links;
   SceneWorld world;
+  bool operator==(const Scene&) const = default;
 };
 
 // Reads and checks a scene file (and the files it lies on). Errors: those of load_config; invalid_argument

@@ -55,8 +55,8 @@ flight::GuardConfig read_guard(ConfigReader table, const SceneVehicle& vehicle) 
   g.braking_m_s2 = table.number("braking_m_s2", vehicle.max_acceleration_m_s2, {0.05, 20.0});
   g.latency_s = table.number("latency_s", g.latency_s, {0.0, 5.0});
   g.margin_m = table.number("stop_margin_m", g.margin_m, {0.0, 5.0});
-  g.valid_share = table.number("min_valid_share", g.valid_share, {0.0, 1.0});
-  g.nearest = static_cast<std::uint32_t>(table.integer("k_smallest", g.nearest, {1, 1000}));
+  g.valid_share = table.number("min_valid_share", g.valid_share, {0.05, 1.0});
+  g.nearest = static_cast<std::uint32_t>(table.integer("k_smallest", g.nearest, {1, 64}));
   g.max_age = table.duration("max_age_ms", g.max_age, {10.0, 5000.0});
   if (g.below_m >= vehicle.altitude_m)
     table.complain("below_m", "reaches the floor at the flown height",

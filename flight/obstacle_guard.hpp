@@ -33,6 +33,7 @@ struct GuardConfig {
   double valid_share = 0.5;   // of the pixels that look through the corridor; less is blind
   std::uint32_t nearest = 5;  // k: the k-th smallest range decides, so k - 1 wild pixels do not
   hal::Duration max_age = std::chrono::milliseconds(300);  // an older frame is blind
+  bool operator==(const GuardConfig&) const = default;
 };
 
 struct GuardVerdict {

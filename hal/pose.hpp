@@ -31,6 +31,7 @@ struct Pose {
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
   double roll_rad = 0.0;
+  bool operator==(const Pose&) const = default;
 };
 
 // A horizontal vector in the body's heading frame turned into the world by yaw alone, and back.

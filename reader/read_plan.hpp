@@ -21,6 +21,7 @@ struct ReadPort {
   double bearing_rad = 0.0;  // direction of maximum radiation in the body frame, REP-103 (left positive)
   std::optional<double> power_dbm;        // empty: the plan's
   std::optional<double> sensitivity_dbm;  // empty: the plan's
+  bool operator==(const ReadPort&) const = default;
 };
 
 // Everything that decides what the reader does on the air: explicit, validated, printable. There are no
@@ -34,6 +35,7 @@ struct ReadPlan {
   hal::Duration on_time{};         // RF on, 50..3000 ms (AUTONOMOUS onTime)
   hal::Duration off_time{};        // RF off: 0,10,20,30,40,50,75,100,125,150,175,200 ms
   std::vector<ReadPort> ports;     // 1..32, distinct port numbers 1..32
+  bool operator==(const ReadPlan&) const = default;
 };
 
 // Errors: invalid_argument naming the field, its value, what is allowed.
