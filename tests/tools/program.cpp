@@ -99,8 +99,10 @@ bool Program::reap(bool block) {
   return true;
 }
 
-bool Program::wait_for(const std::string& where, std::string_view text, Clock::time_point until) {
-  while (where.find(text) == std::string::npos) {
+bool Program::wait_until(const std::function<bool(const ProgramResult&)>& condition,
+                         std::chrono::milliseconds within) {
+  const auto until = Clock::now() + within;
+  while (!condition(result_)) {
     if ((out_pipe_ < 0 && err_pipe_ < 0) || Clock::now() >= until) return false;
     take_output(10ms);
   }
@@ -108,11 +110,13 @@ bool Program::wait_for(const std::string& where, std::string_view text, Clock::t
 }
 
 bool Program::wait_for_out(std::string_view text, std::chrono::milliseconds within) {
-  return wait_for(result_.out, text, Clock::now() + within);
+  return wait_until([text](const ProgramResult& it) { return it.out.find(text) != std::string::npos; },
+                    within);
 }
 
 bool Program::wait_for_err(std::string_view text, std::chrono::milliseconds within) {
-  return wait_for(result_.err, text, Clock::now() + within);
+  return wait_until([text](const ProgramResult& it) { return it.err.find(text) != std::string::npos; },
+                    within);
 }
 
 void Program::send_signal(int number) const {

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,8 +12,8 @@
 namespace forager::tools {
 
 struct ProgramOptions {
-  std::string folder;                                            // working directory; empty: the test's own
-  std::vector<std::pair<std::string, std::string>> environment;  // on top of the test's own
+  std::string folder;                                              // working directory; empty: the test's own
+  std::vector<std::pair<std::string, std::string>> environment{};  // on top of the test's own
   bool closed_stdout = false;  // stdout is a pipe that nobody reads any more
   std::chrono::milliseconds deadline = std::chrono::seconds(30);  // then it is killed
 };
@@ -37,6 +38,12 @@ class Program {
   // Waits until stdout (or stderr) holds the text. False: it ended, or the time was over, without it.
   bool wait_for_out(std::string_view text, std::chrono::milliseconds within);
   bool wait_for_err(std::string_view text, std::chrono::milliseconds within);
+  // Waits until condition(so_far()) holds, asking after every piece of output and at least every 10 ms.
+  // False: it ended, or the time was over, before that.
+  bool wait_until(const std::function<bool(const ProgramResult&)>& condition,
+                  std::chrono::milliseconds within);
+  // What it has printed up to the last wait.
+  [[nodiscard]] const ProgramResult& so_far() const { return result_; }
   void send_signal(int number) const;
   [[nodiscard]] bool running() const { return pid_ > 0; }
   // Waits for the end, at most until the deadline of the options (counted from the start), then kills.
@@ -45,7 +52,6 @@ class Program {
  private:
   using Clock = std::chrono::steady_clock;
   void start(const std::vector<std::string>& arguments, const ProgramOptions& options);
-  bool wait_for(const std::string& where, std::string_view text, Clock::time_point until);
   void take_output(std::chrono::milliseconds wait);
   bool reap(bool block);
 
