@@ -26,7 +26,8 @@ using boards::Run;
 using WallClock = std::chrono::steady_clock;
 
 struct Files {
-  std::string folder;  // empty: none
+  std::string folder;            // empty: none
+  std::filesystem::path parent;  // nearest folder around it that was there before
   std::string report, inventory, journal;
 };
 
@@ -49,6 +50,9 @@ hal::Result<Files> make_files(const RunCommand& command, const boards::Scene& sc
                      ? command.output
                      : fmt::format("out/{}-{}-{}", scene.name, to_string(scene.mission.policy), command.seed);
   std::error_code error;
+  files.parent = std::filesystem::absolute(files.folder, error);
+  while (!std::filesystem::exists(files.parent, error) && files.parent.has_relative_path())
+    files.parent = files.parent.parent_path();
   std::filesystem::create_directories(files.folder, error);
   if (error)
     return hal::fail(code_of(error), files.folder, "create output folder", "cannot be created",
@@ -71,7 +75,10 @@ void remove_files(const Files& files) {
   std::error_code error;
   std::filesystem::remove(files.journal, error);
   for (const char* tail : kInventoryTails) std::filesystem::remove(files.inventory + tail, error);
-  std::filesystem::remove(files.folder, error);  // only if empty
+  // Only what is empty goes.
+  for (auto folder = std::filesystem::absolute(files.folder, error);
+       folder != files.parent && std::filesystem::remove(folder, error);)
+    folder = folder.parent_path();
 }
 
 hal::Result<boards::Scene> scene_for(const RunCommand& command) {
