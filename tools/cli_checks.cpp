@@ -4,9 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -52,12 +50,11 @@ std::string unknown_command(const CLI::App& app, int argc, const char* const* ar
 
 }  // namespace
 
-WholeNumber::WholeNumber() {
-  func_ = [](const std::string& text) {
+WholeNumber::WholeNumber(std::uint64_t most) {
+  func_ = [most](const std::string& text) {
     std::uint64_t value = 0;
     return parse_all(text, value) ? std::string{}
-                                  : fmt::format("'{}' is not a whole number from 0 to {}", text,
-                                                std::numeric_limits<std::uint64_t>::max());
+                                  : fmt::format("'{}' is not a whole number from 0 to {}", text, most);
   };
 }
 

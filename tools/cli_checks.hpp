@@ -1,14 +1,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <string>
+#include <cstdint>
+#include <limits>
 
 namespace forager::tools {
 
-// A whole number from 0 to 2^64 - 1, decimal digits and nothing else: neither "-1" nor "5x" nor "0x10" is
-// taken for something its author may not have meant.
+// A whole number from 0 to `most`, decimal digits and nothing else: neither "-1" nor "5x" nor "0x10" is taken
+// for something its author may not have meant.
 struct WholeNumber : CLI::Validator {
-  WholeNumber();
+  explicit WholeNumber(std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 };
 
 // A finite decimal number within the range.

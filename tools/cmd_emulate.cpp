@@ -14,6 +14,7 @@
 #include "boards/emulate.hpp"
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
+#include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/emulate_watch.hpp"
 #include "tools/stop_signal.hpp"
@@ -83,11 +84,12 @@ hal::Result<std::string> password_of(const EmulateReaderCommand& command) {
 void add_shared(CLI::App* sub, const std::shared_ptr<EmulateCommand>& command) {
   sub->add_option("scene", command->scene, "Scene file, such as scenes/4A.toml")->required();
   sub->add_option("--seed", command->seed, "Seed of everything random, the same as the run's")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(WholeNumber());
   sub->add_option("--speed", command->speed, "Real time, this many times as fast, the same as the run's")
       ->check(CLI::Range(0.01, 100.0));
   sub->add_option("--for", command->for_s, "Stop after so many seconds on the clock")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(NumberBetween(0.001, 1e9));
   sub->add_flag("--json", command->json, "JSON lines on stdout");
   sub->add_flag("--quiet", command->quiet, "Neither notes nor status");
 }
@@ -97,9 +99,12 @@ void add_reader(CLI::App& emulate, int& exit_code) {
   CLI::App* sub = emulate.add_subcommand("reader", "The scene's RFID reader, its tags and the air between");
   add_shared(sub, command);
   sub->add_option("--host", command->host, "Address to listen at")->capture_default_str();
-  sub->add_option("--rest-port", command->rest_port, "TCP port of REST; 0: any")->capture_default_str();
+  sub->add_option("--rest-port", command->rest_port, "TCP port of REST; 0: any")
+      ->capture_default_str()
+      ->check(WholeNumber(65535));
   sub->add_option("--stream-port", command->stream_port, "TCP port of the event stream; 0: any")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(WholeNumber(65535));
   sub->add_option("--truth", command->truth, "HOST:PORT where the autopilot tells where the vehicle is")
       ->capture_default_str();
   auto* user = sub->add_option("--user", command->user, "Demand digest login by this user");

@@ -127,6 +127,9 @@ TEST_F(CommandLine, TakesNumbersStrictly) {
   for (const char* seed : {"abc", "5x", "-1", "+1", "1.5", "0x10", "", " 1", "99999999999999999999999"})
     expect_refusal({"run", kScene, "--seed", seed}, kUsage,
                    AllOf(HasSubstr("--seed"), HasSubstr("whole number")));
+  for (const char* port : {"-1", "0x50", "65536", ""})
+    expect_refusal({"emulate", "reader", kScene, "--for", "0.01", "--rest-port", port}, kUsage,
+                   HasSubstr("--rest-port"));
   for (const char* speed : {"0", "-1", "nan", "inf", "fast", "2x", "1e9"})
     expect_refusal({"run", kScene, "--speed", speed}, kUsage,
                    AllOf(HasSubstr("--speed"), HasSubstr("from 0.01 to 1000")));
