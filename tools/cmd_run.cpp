@@ -90,17 +90,31 @@ hal::Result<boards::Scene> scene_for(const RunCommand& command) {
   return scene;
 }
 
-int exit_code_of(const boards::RunSummary& summary) {
+// A mission that did not go as it should is said so on stderr too, for whoever only looks there.
+int judge(const boards::RunSummary& summary) {
   using flight::EndReason;
-  if (summary.crashes > 0) return kExitCheckFailed;
+  const auto bad = [&](hal::ErrorCode code, std::string_view mend) {
+    return complain({code, "mission " + summary.scene, std::string(to_string(summary.end)), summary.detail,
+                     std::string(mend), 0});
+  };
+  if (summary.crashes > 0) {
+    (void)complain({hal::ErrorCode::io, "mission " + summary.scene, "fly",
+                    fmt::format("the vehicle touched something or came down hard, {} times", summary.crashes),
+                    "See the map in the report.", 0});
+    return kExitCheckFailed;
+  }
   switch (summary.end) {
     case EndReason::refused:
+      (void)bad(hal::ErrorCode::refused, "Mend what the autopilot names.");
       return kExitCheckFailed;
-    case EndReason::reader_lost:
-    case EndReason::pose_lost:
     case EndReason::autopilot_lost:
+      return bad(hal::ErrorCode::disconnected, "Check the autopilot's power, cable and address.");
+    case EndReason::reader_lost:
+      return bad(hal::ErrorCode::disconnected, "Check the reader's power, network and address.");
+    case EndReason::pose_lost:
+      return bad(hal::ErrorCode::disconnected, "Check the localisation camera and what it sees.");
     case EndReason::store_failed:
-      return kExitFailure;
+      return bad(hal::ErrorCode::io, "Check the disk of the output folder.");
     default:
       return kExitDone;
   }
@@ -111,7 +125,7 @@ int close_run(Run& run, const RunCommand& command, const Files& files, const Run
               double wall_time_s, hal::Instant ended) {
   const auto summary = run.summary();
   if (!summary) return complain(summary.error());
-  int exit_code = exit_code_of(*summary);
+  int exit_code = judge(*summary);
   std::string text =
       command.json ? summary_json(*summary, wall_time_s) + "\n" : summary_table(*summary, wall_time_s);
   if (!files.folder.empty()) {

@@ -25,7 +25,8 @@ struct RunCommand {
 };
 
 // Flies a mission to its end. Gives an exit code of tools/cli_style.hpp: failure when it ended by a lost
-// device, check failed when it never left the ground or touched something.
+// device or an inventory that cannot be written, check failed when it was refused or touched something; both
+// with a line on stderr.
 int run_run_command(const RunCommand& command);
 
 // Adds `forager run`; exit_code gets its result when it runs.

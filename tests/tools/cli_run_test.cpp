@@ -164,6 +164,26 @@ TEST_F(RunCommandLine, AnInventoryOfARealPlaceIsNeverOverwritten) {
   EXPECT_TRUE(before == folder_.read("run/inventory.sqlite"));
 }
 
+TEST_F(RunCommandLine, SaysOnStderrWhyNothingFlew) {
+  const std::string scene =
+      folder_.write("hasty.toml", "base = \"" + kScene + "\"\n[links]\nstart_timeout_s = 1\n");
+  const std::string board = folder_.write("board.toml",
+                                          "[board]\nname = \"nobody\"\n"
+                                          "[reader]\nrest_port = 9\nstream_port = 9\n"
+                                          "[autopilot]\naddress = \"127.0.0.1:9\"\n"
+                                          "[world]\ntruth = \"127.0.0.1:45871\"\n");
+  const ProgramResult result = run_program(flown({"--json", "--board", board, "--speed", "5"}, scene));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err,
+              testing::AllOf(testing::StartsWith("forager: mission 4A: autopilot_lost: no heartbeat"),
+                             HasSubstr("Check the autopilot's power")));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  const json summary = lines_of(result.out).back();
+  EXPECT_EQ(summary["end_reason"], "autopilot_lost");
+  EXPECT_EQ(summary["flight_time_s"], 0.0);
+  EXPECT_TRUE(folder_.has("run/report.html"));
+}
+
 TEST_F(RunCommandLine, EveryPolicyFlies) {
   const std::string scene = folder_.write("all.toml", "base = \"" + kScenes +
                                                           "3C.toml\"\n[mission]\ntime_limit_s = 60\n"
