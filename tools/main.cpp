@@ -7,6 +7,7 @@
 
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
+#include "tools/cmd_bench.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_run.hpp"
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_report_command(app, exit_code);
   add_emulate_command(app, exit_code);
+  add_bench_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

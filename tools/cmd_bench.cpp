@@ -1,0 +1,74 @@
+#include "tools/cmd_bench.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "boards/scene.hpp"
+#include "tools/bench_duel.hpp"
+#include "tools/bench_mission.hpp"
+#include "tools/bench_row.hpp"
+#include "tools/cli_style.hpp"
+
+namespace forager::tools {
+namespace {
+
+std::vector<Duel> hot_paths() {
+  std::vector<Duel> duels;
+  duels.push_back(advannet_duel());
+  duels.push_back(mavlink_encode_duel());
+  duels.push_back(mavlink_parse_duel());
+  duels.push_back(guard_duel(80, 60));
+  duels.push_back(guard_duel(640, 480));
+  duels.push_back(new_tags_duel());
+  return duels;
+}
+
+int print(const std::vector<BenchRow>& rows, bool json) {
+  std::string text;
+  if (json)
+    for (const BenchRow& row : rows) text += bench_json(row) + "\n";
+  else
+    text = bench_table(rows);
+  if (const auto written = write_output("-", text); !written) return complain(written.error());
+  return kExitDone;
+}
+
+}  // namespace
+
+int run_bench_speed(const BenchCommand& command) {
+  const auto scene = boards::load_scene(command.scene);
+  if (!scene) return complain(scene.error());
+  auto rows = bench_mission(*scene, command.repeats);
+  if (!rows) return complain(rows.error());
+  DuelOptions options;
+  options.repeats = command.repeats;
+  for (const Duel& duel : hot_paths()) {
+    auto row = measure(duel, options);
+    if (!row) {
+      complain(row.error());
+      return kExitCheckFailed;
+    }
+    rows->push_back(std::move(*row));
+  }
+  return print(*rows, command.json);
+}
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  CLI::App* bench = app.add_subcommand("bench", "Measure this machine and this program");
+  bench->require_subcommand(1);
+  auto command = std::make_shared<BenchCommand>();
+  CLI::App* speed = bench->add_subcommand(
+      "speed", "How fast missions run and where their time goes; hot paths beside other ways to do the same");
+  speed->add_option("--scene", command->scene, "Mission to fly, every device emulated")
+      ->capture_default_str();
+  speed->add_option("--repeat", command->repeats, "Measurements of each, of which the median counts")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  speed->add_flag("--json", command->json,
+                  "JSON lines: name, ours, unit, peer, peer_value, ratio = ours / peer_value");
+  speed->callback([command, &exit_code] { exit_code = run_bench_speed(*command); });
+}
+
+}  // namespace forager::tools
