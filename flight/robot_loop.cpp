@@ -77,7 +77,7 @@ void RobotLoop::sense(hal::Instant now) {
     if (status_.took_off && !status_.touched_down) path_.add(now, *pose);
   }
   intake_.take(reader_->reads(), localisation_.history());
-  if (reader_->link().phase == reader::LinkPhase::open)
+  if (reader_->link().reading())
     reader_lost_since_.reset();
   else if (!reader_lost_since_)
     reader_lost_since_ = now;

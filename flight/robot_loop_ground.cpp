@@ -53,10 +53,11 @@ void RobotLoop::wait_for_links(hal::Instant now) {
   if (!autopilot.link_up) {
     missing = EndReason::autopilot_lost;
     what = "no heartbeat from the autopilot";
-  } else if (reader_->link().phase != reader::LinkPhase::open) {
+  } else if (!reader_->link().reading()) {
     missing = EndReason::reader_lost;
-    what = reader_->link().reason.empty() ? std::string_view("the reader is not reading")
-                                          : std::string_view(reader_->link().reason);
+    what = reader_->link().phase == reader::LinkPhase::open ? "the reader's event stream says nothing"
+           : reader_->link().reason.empty()                 ? std::string_view("the reader is not reading")
+                                                            : std::string_view(reader_->link().reason);
   } else if (!localisation_.healthy()) {
     missing = EndReason::pose_lost;
     what = "no trustworthy pose";

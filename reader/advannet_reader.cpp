@@ -176,6 +176,7 @@ void AdvanNetReader::connect_stream() {
   }
   stream_.reset();
   stream_live_ = true;
+  noise_ = false;
   stream_heard_ = now_;
   if (writing_all_)
     go(Step::start);
@@ -191,6 +192,7 @@ void AdvanNetReader::open_link() {
   check_now_ = false;
   if (was_open_) ++counters_.reconnects;
   was_open_ = true;
+  link_.speaks = false;
   set_phase(LinkPhase::open, {});
 }
 
@@ -209,10 +211,19 @@ void AdvanNetReader::take_in() {
     if (*count == 0) return;
     taken += *count;
     stream_.commit(*count);
-    stream_heard_ = link_.last_heard = now_;
-    backoff_.reset();
+    link_.last_heard = now_;
+    const std::uint64_t before = frames();
     take_frames();
+    noise_ = frames() == before;  // or part of a frame
+    if (noise_) continue;
+    stream_heard_ = now_;
+    link_.speaks = true;
+    backoff_.reset();
   }
+}
+
+std::uint64_t AdvanNetReader::frames() const {
+  return stream_.counters().frames + stream_.counters().keepalives;
 }
 
 void AdvanNetReader::take_frames() {
@@ -281,10 +292,10 @@ bool AdvanNetReader::accept(TagRead& read) {
 
 void AdvanNetReader::watch() {
   if (step_ != Step::open || now_ - stream_heard_ < config_.stream_timeout) return;
-  lose(hal::describe(
-      {hal::ErrorCode::timeout, std::string(events_.name()), "read event stream",
-       fmt::format("nothing for {:.1f} s, not even a keep-alive", hal::to_seconds(now_ - stream_heard_)),
-       "Check the reader's power and the network; connecting again"}));
+  lose(hal::describe({hal::ErrorCode::timeout, std::string(events_.name()), "read event stream",
+                      fmt::format("{} for {:.1f} s, not even a keep-alive", noise_ ? "only noise" : "nothing",
+                                  hal::to_seconds(now_ - stream_heard_)),
+                      "Check the reader's power and the network; connecting again"}));
 }
 
 }  // namespace forager::reader

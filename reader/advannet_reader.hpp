@@ -148,6 +148,7 @@ class AdvanNetReader final : public TagReader {
   bool accept(TagRead& read);
   void connect_stream();
   void open_link();
+  [[nodiscard]] std::uint64_t frames() const;  // so far, keep-alives included
   void end();
   void watch();
 
@@ -209,7 +210,8 @@ class AdvanNetReader final : public TagReader {
   AdvanNetStream stream_;
   AdvanNetMessage message_;
   bool stream_live_ = false;
-  hal::Instant stream_heard_;  // last byte of the event stream, or its opening
+  hal::Instant stream_heard_;  // last whole frame of the event stream, or its opening
+  bool noise_ = false;         // bytes have come since, but no frame
   std::vector<TagRead> reads_;
   std::vector<GpiEvent> inputs_;
   ClockOffset clock_;

@@ -27,6 +27,11 @@ struct LinkStatus {
   hal::Instant since;        // start of the present phase
   hal::Instant last_heard;   // last byte of any kind from the device
   std::uint32_t losses = 0;  // times the link went from open to lost
+  bool speaks = true;        // since it opened, the device has said something that was understood (a driver
+                             // that cannot tell says true)
+  // Silence of such a link means that there are no tags. A connection that delivers nothing, or only noise,
+  // is none.
+  [[nodiscard]] bool reading() const { return phase == LinkPhase::open && speaks; }
 };
 
 // A running tag reader of any make. update() does all the work and never blocks; reads() gives what it found.

@@ -61,6 +61,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Trouble{"Battery", EndReason::battery, 10s, [](MissionRig& rig) { rig.autopilot.set_battery(0.19); }},
         Trouble{"ReaderLost", EndReason::reader_lost, 20s, [](MissionRig& rig) { rig.reader.lose(); }},
+        Trouble{"ReaderSaysNothing", EndReason::reader_lost, 20s,
+                [](MissionRig& rig) { rig.reader.status.speaks = false; }},
         Trouble{"ReaderFailed", EndReason::reader_lost, 10s,
                 [](MissionRig& rig) { rig.reader.lose(reader::LinkPhase::failed); }},
         Trouble{"PoseLost", EndReason::pose_lost, 12s, [](MissionRig& rig) { rig.pose_good = false; }},
@@ -159,6 +161,7 @@ TEST(RobotLoopAbort, WhatIsMissingAtTheStartIsNamed) {
   for (const Missing& missing :
        {Missing{EndReason::autopilot_lost, [](MissionRig& rig) { rig.autopilot.link_up = false; }},
         Missing{EndReason::reader_lost, [](MissionRig& rig) { rig.reader.lose(); }},
+        Missing{EndReason::reader_lost, [](MissionRig& rig) { rig.reader.status.speaks = false; }},
         Missing{EndReason::reader_lost, [](MissionRig& rig) { rig.reader.lose(reader::LinkPhase::failed); }},
         Missing{EndReason::pose_lost, [](MissionRig& rig) { rig.pose_good = false; }},
         Missing{EndReason::halted, [](MissionRig& rig) {

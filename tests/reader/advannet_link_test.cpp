@@ -46,6 +46,24 @@ TEST(AdvanNetLink, SilenceIsALossWithinTheTimeoutAndHealsWithoutARestart) {
   EXPECT_EQ(rig.fake.count("GET start"), 1U);
 }
 
+// A port that something else listens to connects as well as a reader does.
+TEST(AdvanNetLink, NoiseIsNotAReaderThatFoundNothing) {
+  AdvanNetRig rig;
+  rig.keep_alives = false;
+  rig.open();
+  for (int i = 0; i < 95; ++i) {
+    rig.fake.send("\x01\xFFSSH-2.0-OpenSSH\r\n220 mail ready\n");
+    rig.run(100ms);
+    ASSERT_FALSE(rig.driver.link().reading());
+  }
+  rig.run(1s);
+  EXPECT_EQ(rig.driver.link().phase, LinkPhase::lost);
+  EXPECT_THAT(rig.driver.link().reason, HasSubstr("only noise for 10.0 s"));
+  rig.keep_alives = true;
+  rig.run(7s);
+  EXPECT_TRUE(rig.driver.link().reading());
+}
+
 TEST(AdvanNetLink, DroppedConnectionDeliversWhatCameBeforeAndReconnects) {
   AdvanNetRig rig;
   rig.open();
