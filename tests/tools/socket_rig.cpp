@@ -83,6 +83,7 @@ SocketRig::SocketRig(const Options& options)
       mavlink_port(free_port(host)),
       pose_port(free_port(host)),
       air_port(free_port(host)),
+      rogue_port(free_port(host)),
       folder_(make_folder()) {
   write_scene(options);
   write_board(options);
@@ -140,8 +141,9 @@ address = "{0}:{3}"
 [world]
 truth = "{0}:{4}"
 )",
-                                                   host, rest_port, stream_port, mavlink_port, pose_port,
-                                                   options.login);
+                                                   host, rest_port,
+                                                   options.rogue_stream ? rogue_port : stream_port,
+                                                   mavlink_port, pose_port, options.login);
 }
 
 std::vector<std::string> SocketRig::with_shared(std::vector<std::string> arguments,

@@ -33,9 +33,10 @@ std::uint32_t tags_decided_on(const std::string& out);
 class SocketRig {
  public:
   struct Options {
-    std::string mission = {};  // more lines of [mission]
-    std::string links = {};    // more lines of [links]
-    std::string login = {};    // lines of the board's [reader]
+    std::string mission = {};   // more lines of [mission]
+    std::string links = {};     // more lines of [links]
+    std::string login = {};     // lines of the board's [reader]
+    bool rogue_stream = false;  // the mission looks for the event stream at a port of its own, rogue_port
   };
   SocketRig() : SocketRig(Options{}) {}
   explicit SocketRig(const Options& options);
@@ -62,7 +63,7 @@ class SocketRig {
   [[nodiscard]] std::uint64_t inventory_reads() const;
 
   std::string host;
-  std::uint16_t rest_port, stream_port, mavlink_port, pose_port, air_port;
+  std::uint16_t rest_port, stream_port, mavlink_port, pose_port, air_port, rogue_port;
 
  private:
   void write_scene(const Options& options) const;
