@@ -114,7 +114,9 @@ StepOutcome StepFlight::look(const GuardVerdict& way, hal::Instant now) {
 StepOutcome StepFlight::advance(const hal::Pose& pose, hal::Vec3 velocity, const GuardVerdict& way,
                                 hal::Instant now) {
   const double made_m = along(pose.position - start_world_);
-  if (way.way != WayAhead::clear) {
+  // Turned away from its way, it would fly where the camera does not look.
+  const bool astray = std::abs(hal::angle_difference(yaw_rad_, pose.yaw_rad)) > config_.arrival_yaw_rad;
+  if (way.way != WayAhead::clear || astray) {
     const double v = std::max(0.0, along(velocity));
     run_m_ = std::max(0.0, std::min(run_m_, made_m + v * v / (2.0 * config_.braking_m_s2)));
     goal_world_ = start_world_ + run_m_ * hal::Vec3{std::cos(yaw_rad_), std::sin(yaw_rad_), 0.0};
@@ -126,8 +128,7 @@ StepOutcome StepFlight::advance(const hal::Pose& pose, hal::Vec3 velocity, const
   goal_world_ = start_world_ + run_m_ * hal::Vec3{std::cos(yaw_rad_), std::sin(yaw_rad_), 0.0};
   const bool there = run_m_ >= length_m_ && near(pose.position.x, goal_world_.x, config_.arrival_m) &&
                      near(pose.position.y, goal_world_.y, config_.arrival_m) &&
-                     near(pose.position.z, goal_world_.z, config_.arrival_m) &&
-                     std::abs(hal::angle_difference(yaw_rad_, pose.yaw_rad)) <= config_.arrival_yaw_rad;
+                     near(pose.position.z, goal_world_.z, config_.arrival_m);
   if (there) return finish(StepOutcome::arrived);
   if (!deadline_.expired(now)) return StepOutcome::flying;
   hold_here(pose);  // what is left of the way would be flown unseen

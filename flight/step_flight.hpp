@@ -34,7 +34,8 @@ enum class StepOutcome : std::uint8_t {
 //   turning    yaw and height to the goal        -> looking when aligned; arrived if there is no way to go;
 //                                                   late when it takes too long
 //   looking    waits for a frame taken since     -> advancing if clear; blocked if blocked, or blind for long
-//   advancing  the goal runs ahead at the speed  -> arrived; stopping as soon as the way is not clear; late
+//   advancing  the goal runs ahead at the speed  -> arrived; stopping as soon as the way is not clear, or the
+//                                                   heading leaves it by more than arrival_yaw; late
 //   stopping   holds the place it can stop at    -> blocked when it has come to rest
 //   holding    keeps place, height and heading   -> (the next step)
 //
