@@ -18,6 +18,8 @@ namespace forager::tools {
 namespace {
 
 using namespace std::chrono_literals;
+
+class SocketGarbage : public SocketTest {};
 using hal::ByteStream;
 
 std::array<std::byte, 1024> garbage(hal::Random& random) {
@@ -94,7 +96,7 @@ SocketRig::Options short_start() {
   return options;
 }
 
-TEST(SocketGarbage, AStreamOfNoiseMovesNothing) {
+TEST_F(SocketGarbage, AStreamOfNoiseMovesNothing) {
   SocketRig::Options options = short_start();
   options.rogue_stream = true;
   SocketRig rig(options);
@@ -109,7 +111,7 @@ TEST(SocketGarbage, AStreamOfNoiseMovesNothing) {
   EXPECT_FALSE(rig.autopilot_armed());
 }
 
-TEST(SocketGarbage, AReaderThatAnswersNoiseMovesNothing) {
+TEST_F(SocketGarbage, AReaderThatAnswersNoiseMovesNothing) {
   SocketRig rig(short_start());
   rig.start_autopilot();
   RogueServer rogue(rig.host, rig.rest_port);
@@ -120,7 +122,7 @@ TEST(SocketGarbage, AReaderThatAnswersNoiseMovesNothing) {
   EXPECT_FALSE(rig.autopilot_armed());
 }
 
-TEST(SocketGarbage, AnAutopilotThatSpeaksNoiseMovesNothing) {
+TEST_F(SocketGarbage, AnAutopilotThatSpeaksNoiseMovesNothing) {
   SocketRig rig(short_start());
   rig.start_reader();
   RogueListener rogue(rig.host, rig.mavlink_port);
@@ -147,7 +149,7 @@ void shout_udp(const std::string& host, std::uint16_t port, hal::Random& random)
 }
 
 // Strangers were at every port first; the mission that comes after them flies as if they had not.
-TEST(SocketGarbage, EmulatorsShrugOffStrangers) {
+TEST_F(SocketGarbage, EmulatorsShrugOffStrangers) {
   SocketRig rig({.mission = "time_limit_s = 10.0"});
   rig.start_reader();
   rig.start_autopilot();

@@ -13,6 +13,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+class SocketMission : public SocketTest {};
+
 constexpr int kTags = 40;
 
 int tags_read(const Json& summary) { return summary.value("tags_read", -1); }
@@ -22,7 +24,7 @@ bool found_some(const ProgramResult& so_far) { return tags_decided_on(so_far.out
 
 // Twenty seeds in process read 38 to 40 of the 40 tags; what differs over sockets is when each byte arrives,
 // so every draw of the air falls differently. Five tags are more than twice the widest difference seen.
-TEST(SocketMission, FindsWhatTheSameMissionInOneProgramFinds) {
+TEST_F(SocketMission, FindsWhatTheSameMissionInOneProgramFinds) {
   SocketRig rig;
   rig.start_reader();
   rig.start_autopilot();
@@ -39,7 +41,7 @@ TEST(SocketMission, FindsWhatTheSameMissionInOneProgramFinds) {
   EXPECT_EQ(rig.inventory_reads(), over_sockets["reads"]);
 }
 
-TEST(SocketMission, GoesOnWhenTheReaderComesBack) {
+TEST_F(SocketMission, GoesOnWhenTheReaderComesBack) {
   SocketRig rig({.links = "reader_allowance_s = 300.0"});
   rig.start_reader();
   rig.start_autopilot();
@@ -63,7 +65,7 @@ TEST(SocketMission, GoesOnWhenTheReaderComesBack) {
   EXPECT_EQ(rig.inventory_reads(), summary["reads"]);
 }
 
-TEST(SocketMission, LandsWithItsInventoryWhenTheReaderStaysAway) {
+TEST_F(SocketMission, LandsWithItsInventoryWhenTheReaderStaysAway) {
   SocketRig rig({.links = "reader_allowance_s = 5.0"});
   rig.start_reader();
   rig.start_autopilot();
@@ -95,7 +97,7 @@ ProgramOptions with_password(const std::string& password) {
 const std::vector<std::string> kLogin{"--user", "robot", "--password-env", "AISLE_PASSWORD"};
 constexpr const char* kBoardLogin = "user = \"robot\"\npassword_env = \"AISLE_PASSWORD\"";
 
-TEST(SocketMission, LogsInToTheReader) {
+TEST_F(SocketMission, LogsInToTheReader) {
   SocketRig rig({.mission = "time_limit_s = 10.0", .login = kBoardLogin});
   rig.start_reader(kLogin, with_password("keep out"));
   rig.start_autopilot();
@@ -106,7 +108,7 @@ TEST(SocketMission, LogsInToTheReader) {
   EXPECT_GE(tags_read(summary), 4) << summary;
 }
 
-TEST(SocketMission, StaysOnTheGroundWithTheWrongPassword) {
+TEST_F(SocketMission, StaysOnTheGroundWithTheWrongPassword) {
   SocketRig rig({.login = kBoardLogin});
   rig.start_reader(kLogin, with_password("keep out"));
   rig.start_autopilot();
@@ -120,7 +122,7 @@ TEST(SocketMission, StaysOnTheGroundWithTheWrongPassword) {
   EXPECT_FALSE(rig.autopilot_armed());
 }
 
-TEST(SocketMission, SaysWhyTheAutopilotDoesNotArm) {
+TEST_F(SocketMission, SaysWhyTheAutopilotDoesNotArm) {
   SocketRig rig;
   rig.start_reader();
   rig.start_autopilot({"--refuse-arming", "Compass not calibrated"});
@@ -134,7 +136,7 @@ TEST(SocketMission, SaysWhyTheAutopilotDoesNotArm) {
   EXPECT_FALSE(rig.autopilot_armed());
 }
 
-TEST(SocketMission, EndsWhenTheAutopilotIsGone) {
+TEST_F(SocketMission, EndsWhenTheAutopilotIsGone) {
   SocketRig rig({.links = "autopilot_allowance_s = 5.0"});
   rig.start_reader();
   rig.start_autopilot();

@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -10,6 +9,8 @@
 #include <csignal>
 #include <fstream>
 #include <stdexcept>
+
+#include "hal/linux/curl_http_client.hpp"
 
 namespace forager::tools {
 namespace {
@@ -210,6 +211,18 @@ std::uint64_t SocketRig::inventory_reads() const {
   std::uint64_t reads = 0;
   for (const reader::InventoryItem& item : items()) reads += item.count;
   return reads;
+}
+
+void SocketTest::SetUp() {
+  const auto store = reader::open_sqlite_inventory("no/such.sqlite", reader::StoreMode::read);
+  if (!store && store.error().code == hal::ErrorCode::unsupported) GTEST_SKIP() << "built without SQLite";
+  const auto client = hal::make_curl_http_client("http://127.0.0.1:1");
+  hal::HttpRequest request;
+  request.path = "/";
+  request.timeout = 1s;
+  const auto started = client->start(request, hal::Instant{});
+  if (!started && started.error().code == hal::ErrorCode::unsupported)
+    GTEST_SKIP() << "built without libcurl";
 }
 
 }  // namespace forager::tools

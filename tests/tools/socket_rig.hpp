@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -76,6 +78,12 @@ class SocketRig {
   std::optional<Program> reader_;
   std::optional<Program> autopilot_;
   std::optional<Program> mission_;
+};
+
+// Skips where the mission cannot be flown because a library was not built in.
+class SocketTest : public testing::Test {
+ protected:
+  void SetUp() override;
 };
 
 }  // namespace forager::tools
