@@ -118,6 +118,7 @@ class Mission final : public Run {
     if (status.detail != to_string(status.end)) s.detail = status.detail;
     s.reader_losses = reader_.link().losses;
     s.autopilot_losses = autopilot_losses_;
+    s.radio_may_be_on = reader_.may_radiate();
     s.crashes = devices_->crashes();
     s.battery_fraction = status.battery_fraction;
     s.ports = ports();

@@ -38,6 +38,7 @@ struct RunSummary {
   std::string detail;               // why, in words
   std::uint32_t reader_losses = 0;  // times the link was lost
   std::uint32_t autopilot_losses = 0;
+  bool radio_may_be_on = false;  // the reader has not confirmed that it stopped
   std::uint32_t crashes = 0;
   std::optional<double> battery_fraction;
   std::vector<PortSummary> ports;

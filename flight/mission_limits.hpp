@@ -39,7 +39,7 @@ struct Vitals {
 // What must follow. Worst first: who has the vehicle counts more than whether it should land.
 enum class Consequence : std::uint8_t {
   go_on,
-  fall_silent,  // the autopilot is not there: send nothing, wait for it
+  fall_silent,  // the autopilot is not there: command nothing, wait for it
   hands_off,    // the vehicle is somebody else's: command nothing any more
   land,
 };

@@ -23,7 +23,7 @@ enum class MissionPhase : std::uint8_t {
   listening,  // a window is open
   stepping,   // turning, looking, going
   landing,    // asked to land, or landing
-  silent,     // the autopilot is gone: nothing is sent
+  silent,     // the autopilot is gone: neither heartbeat nor command is sent
   storing,    // down; the last reads go into the inventory
   done,
 };

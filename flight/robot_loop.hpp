@@ -67,7 +67,7 @@ struct RobotLoopConfig {
 //   listening  | holds place; counts new tags          | window over: decide   | stepping, or landing
 //   landing    | asked to land; asks again if refused  | on the ground and     | storing
 //              |                                       | disarmed              |
-//   silent     | nothing at all                        | autopilot heard again | landing; allowance: storing
+//   silent     | no heartbeat and no command           | autopilot heard again | landing; allowance: storing
 //   storing    | the reader is off, reads are stored   | stored, or allowance  | done
 //   done       | nothing                               |                       |
 // clang-format on

@@ -100,6 +100,8 @@ void RobotLoop::wait_for_mode(hal::Instant now) {
 
 void RobotLoop::wait_for_arming(hal::Instant now) {
   if (refused_on_ground("the autopilot did not arm", now) || !autopilot_->state().armed) return;
+  if (!autopilot_->state().battery_fraction)
+    journal_->note(now, kSource, "the autopilot tells nothing of its battery: its reserve is not watched");
   floor_z_m_ = pose_world_.position.z;
   status_.took_off = now;
   enter(MissionPhase::takeoff, now);
@@ -156,7 +158,10 @@ void RobotLoop::stay_silent(hal::Instant now) {
 
 void RobotLoop::end_on_ground(EndReason why, std::string_view detail, hal::Instant now) {
   set_end(why, detail, now);
-  if (!autopilot_->state().armed) return finish(now);
+  // Told to arm, it may be armed before its next heartbeat says so, or when a lost answer is repeated.
+  const bool may_arm = status_.phase == MissionPhase::arming && autopilot_->state().link_up &&
+                       autopilot_->request_state() != RequestState::refused;
+  if (!autopilot_->state().armed && !may_arm) return finish(now);
   enter(MissionPhase::landing, now);
   autopilot_->request_disarm(now);
   ask_again_at_ = now + kAskAgain;
@@ -174,7 +179,8 @@ void RobotLoop::start_landing(EndReason why, std::string_view detail, hal::Insta
 
 void RobotLoop::land(hal::Instant now) {
   const AutopilotState& autopilot = autopilot_->state();
-  if ((autopilot.link_up && !autopilot.armed) || waited(config_.limits.landing_timeout, now))
+  const bool asked = autopilot_->request_state() == RequestState::pending;
+  if ((autopilot.link_up && !autopilot.armed && !asked) || waited(config_.limits.landing_timeout, now))
     return finish(now);
   if (!autopilot.link_up) return;
   if (!autopilot.in_air && !status_.touched_down && waited(kOnTheGround, now)) status_.touched_down = now;

@@ -102,6 +102,8 @@ class AdvanNetReader final : public TagReader {
   void stop(hal::Instant now);
   // Nothing is under way or owed to the reader (closed or failed).
   [[nodiscard]] bool idle() const { return step_ == Step::closed || step_ == Step::failed; }
+  // The reader was running, or told to run, and has not confirmed a stop since.
+  [[nodiscard]] bool may_radiate() const { return may_radiate_; }
 
   // Input changes taken in by the last update(); with read_inputs also the levels found when opening.
   [[nodiscard]] std::span<const GpiEvent> inputs() const { return inputs_; }

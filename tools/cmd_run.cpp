@@ -97,6 +97,10 @@ int judge(const boards::RunSummary& summary) {
     return complain({code, "mission " + summary.scene, std::string(to_string(summary.end)), summary.detail,
                      std::string(mend), 0});
   };
+  if (summary.radio_may_be_on)
+    (void)complain({hal::ErrorCode::disconnected, "reader", "stop",
+                    "it did not confirm its stop and may go on radiating", "Stop it, or take its power off.",
+                    0});
   if (summary.crashes > 0) {
     (void)complain({hal::ErrorCode::io, "mission " + summary.scene, "fly",
                     fmt::format("the vehicle touched something or came down hard, {} times", summary.crashes),
@@ -116,7 +120,7 @@ int judge(const boards::RunSummary& summary) {
     case EndReason::store_failed:
       return bad(hal::ErrorCode::io, "Check the disk of the output folder.");
     default:
-      return kExitDone;
+      return summary.radio_may_be_on ? kExitFailure : kExitDone;
   }
 }
 

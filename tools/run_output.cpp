@@ -41,6 +41,7 @@ std::string summary_table(const RunSummary& s, double wall_time_s) {
   out += row("ended", s.detail.empty() ? std::string(to_string(s.end))
                                        : fmt::format("{}: {}", to_string(s.end), one_line(s.detail)));
   out += row("link losses", fmt::format("reader {}, autopilot {}", s.reader_losses, s.autopilot_losses));
+  if (s.radio_may_be_on) out += row("RADIO", "may still be on: the reader did not confirm its stop");
   if (s.crashes > 0) out += row("CRASHES", fmt::format("{}", s.crashes));
   out += fmt::format("  {:<6}{:<14}{:>9}{:>10}{:>10}\n", "port", "looks", "bearing", "reads", "new tags");
   for (const PortSummary& p : s.ports)
@@ -75,6 +76,7 @@ std::string summary_json(const RunSummary& s, double wall_time_s) {
   j["detail"] = s.detail;
   j["reader_losses"] = s.reader_losses;
   j["autopilot_losses"] = s.autopilot_losses;
+  j["radio_may_be_on"] = s.radio_may_be_on;
   j["crashes"] = s.crashes;
   j["battery"] = s.battery_fraction ? nlohmann::ordered_json(*s.battery_fraction) : nlohmann::ordered_json();
   j["ports"] = nlohmann::ordered_json::array();

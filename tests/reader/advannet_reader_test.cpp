@@ -376,6 +376,7 @@ TEST(AdvanNetReader, HaltStopsTheRadioAtOnce) {
   EXPECT_FALSE(rig.fake.outputs.at(9));
   EXPECT_TRUE(rig.driver.idle());
   EXPECT_EQ(rig.fake.count("GET stop"), 2U) << "one when configuring, one now";
+  EXPECT_FALSE(rig.driver.may_radiate());
 }
 
 TEST(AdvanNetReader, HaltInTheMiddleOfARequestStillSendsTheStop) {
@@ -396,6 +397,7 @@ TEST(AdvanNetReader, HaltOfADeadReaderEndsInBoundedTime) {
   rig.driver.halt();
   rig.run(5s);
   EXPECT_TRUE(rig.driver.idle());
+  EXPECT_TRUE(rig.driver.may_radiate()) << "nobody has heard that it stopped";
   EXPECT_EQ(rig.driver.link().phase, LinkPhase::closed);
 }
 

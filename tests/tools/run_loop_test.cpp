@@ -135,6 +135,19 @@ TEST_F(RunLoop, ARunThatIsDroppedInFlightIsToldToLand) {
   EXPECT_THAT(notes_, HasSubstr("reader: link closed: halted"));
 }
 
+TEST_F(RunLoop, HaltedWhileArmingItDisarms) {
+  hal::Instant now;
+  for (; run_->status().phase != flight::MissionPhase::arming; now += Run::kTick) run_->update(now);
+  for (int i = 0; i < 5; ++i, now += Run::kTick) run_->update(now);
+  ASSERT_THAT(notes_, HasSubstr("sim-autopilot: Arming motors"));
+  ASSERT_EQ(run_->status().phase, flight::MissionPhase::arming) << "no heartbeat has said so yet";
+  run_->halt();
+  for (; !run_->done() && now < hal::Instant(20s); now += Run::kTick) run_->update(now);
+  EXPECT_TRUE(run_->done());
+  EXPECT_EQ(run_->status().end, flight::EndReason::halted);
+  EXPECT_GT(notes_.rfind("Disarming motors") + 1, notes_.rfind("Arming motors"));
+}
+
 TEST_F(RunLoop, ARunThatIsDroppedOnTheGroundCommandsNothing) {
   for (hal::Instant now; now < hal::Instant(200ms); now += Run::kTick) run_->update(now);
   ASSERT_EQ(run_->status().phase, flight::MissionPhase::waiting);

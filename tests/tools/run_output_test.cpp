@@ -92,14 +92,31 @@ TEST(SummaryJson, IsOneLineWithExactlyTheDocumentedKeys) {
   const auto j = nlohmann::json::parse(line);
   std::set<std::string> keys;
   for (const auto& [key, value] : j.items()) keys.insert(key);
-  EXPECT_EQ(keys, (std::set<std::string>{"event",         "scene",         "title",
-                                         "board",         "policy",        "seed",
-                                         "tags_present",  "tags_read",     "other_tags_read",
-                                         "coverage",      "reads",         "sim_time_s",
-                                         "flight_time_s", "wall_time_s",   "path_m",
-                                         "decisions",     "windows",       "end_reason",
-                                         "detail",        "reader_losses", "autopilot_losses",
-                                         "crashes",       "battery",       "ports"}));
+  EXPECT_EQ(keys, (std::set<std::string>{"event",
+                                         "scene",
+                                         "title",
+                                         "board",
+                                         "policy",
+                                         "seed",
+                                         "tags_present",
+                                         "tags_read",
+                                         "other_tags_read",
+                                         "coverage",
+                                         "reads",
+                                         "sim_time_s",
+                                         "flight_time_s",
+                                         "wall_time_s",
+                                         "path_m",
+                                         "decisions",
+                                         "windows",
+                                         "end_reason",
+                                         "detail",
+                                         "reader_losses",
+                                         "autopilot_losses",
+                                         "radio_may_be_on",
+                                         "crashes",
+                                         "battery",
+                                         "ports"}));
   EXPECT_EQ(j["event"], "summary");
   EXPECT_DOUBLE_EQ(j["coverage"], 0.97);
   EXPECT_EQ(j["end_reason"], "no_new_tags");
