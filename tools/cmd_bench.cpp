@@ -9,6 +9,7 @@
 #include "tools/bench_duel.hpp"
 #include "tools/bench_mission.hpp"
 #include "tools/bench_row.hpp"
+#include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
 
 namespace forager::tools {
@@ -65,6 +66,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   speed->add_option("--repeat", command->repeats, "Measurements of each, of which the median counts")
       ->capture_default_str()
+      ->check(WholeNumber(1000))
       ->check(CLI::Range(1, 1000));
   speed->add_flag("--json", command->json,
                   "JSON lines: name, ours, unit, peer, peer_value, ratio = ours / peer_value");

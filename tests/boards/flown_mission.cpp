@@ -82,6 +82,7 @@ double median(std::vector<double> values) {
 
 double median_coverage(const std::vector<FlownMission>& missions) {
   std::vector<double> coverages;
+  coverages.reserve(missions.size());
   for (const FlownMission& mission : missions) coverages.push_back(mission.coverage());
   return median(std::move(coverages));
 }

@@ -73,6 +73,17 @@ TEST_F(BenchCommandLine, AMissingSceneIsAnErrorNotARow) {
   EXPECT_THAT(err_, HasSubstr("no/such.toml"));
 }
 
+TEST_F(BenchCommandLine, NoMeasurementAtAllIsRefused) {
+  for (const char* count : {"0", "-1", "1001", "3x", ""}) {
+    CLI::App app("forager");
+    int exit_code = -1;
+    add_bench_command(app, exit_code);
+    std::vector<std::string> arguments{"--repeat=" + std::string(count), "speed", "bench"};
+    EXPECT_THROW(app.parse(arguments), CLI::ParseError) << count;
+    EXPECT_EQ(exit_code, -1);
+  }
+}
+
 TEST(BenchTable, ScalesUnitsAndSaysHowLongOneTakes) {
   const std::vector<BenchRow> rows{{"decode", 12.5e6, "events/s", "other", 2.5e6},
                                    {"part", 0.02, "s", "whole run", 0.08},
