@@ -92,8 +92,7 @@ void AdvanNetReader::halt() noexcept {
     shut_down("halted", Step::closed);
     send_due();
   } catch (...) {
-    // Out of memory at the worst time: the reader goes on, but nobody listens. There is nothing left to do.
-    step_ = Step::closed;
+    step_ = Step::closed;  // out of memory: the reader goes on, and may_radiate() says so
   }
 }
 

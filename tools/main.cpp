@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 
 #include "tools/cli_checks.hpp"
@@ -21,9 +22,7 @@ void keep_standard_descriptors() {
     if (fcntl(descriptor, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_command(int argc, char** argv) {
   using namespace forager::tools;
   keep_standard_descriptors();
   // Whoever reads our output may go away; that must not end a flight.
@@ -45,8 +44,17 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // help and version
     return complain_about_arguments(app, error, argc, argv);
-  } catch (const std::exception& error) {
-    return complain({forager::hal::ErrorCode::io, "forager", "run a command", error.what(), {}, 0});
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_command(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "forager: %s\n", error.what());
+    return forager::tools::kExitFailure;
+  }
 }
