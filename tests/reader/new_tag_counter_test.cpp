@@ -94,7 +94,8 @@ TEST(NewTagCounter, EqualTimesGoToTheLowerPortNumberNotToTheFirstInThePlan) {
 
 TEST(NewTagCounter, SplitGivesEqualShares) {
   NewTagCounter counter(lab_ports(), ShareRule::split, 100);
-  for (const std::uint8_t port : std::array<std::uint8_t, 4>{4, 3, 4, 2}) counter.add(read_of(7, port, 100ms));
+  for (const std::uint8_t port : std::array<std::uint8_t, 4>{4, 3, 4, 2})
+    counter.add(read_of(7, port, 100ms));
   counter.add(read_of(8, 4, 100ms));
   const auto weights = counter.close_window();
   EXPECT_DOUBLE_EQ(weight_of(weights, 4), 1.0 + 1.0 / 3.0);
