@@ -92,6 +92,8 @@ SocketRig::SocketRig(const Options& options)
 
 SocketRig::~SocketRig() {
   mission_.reset();
+  for (auto* emulator : {&reader_, &autopilot_})
+    if (*emulator && (*emulator)->running()) end(**emulator);
   if (testing::Test::HasFailure()) {
     if (reader_) fmt::print(stderr, "-- reader:\n{}{}", reader_->so_far().out, reader_->so_far().err);
     if (autopilot_)
@@ -187,10 +189,14 @@ ProgramResult SocketRig::fly_in_process() const {
   return run_program({"run", file("aisle.toml"), "--json", "--no-files"});
 }
 
-bool SocketRig::autopilot_armed() {
-  autopilot_->send_signal(SIGTERM);
-  return autopilot_->finish().out.find("Arming motors") != std::string::npos;
+ProgramResult SocketRig::end(Program& emulator) {
+  emulator.send_signal(SIGTERM);
+  ProgramResult result = emulator.finish();
+  EXPECT_EQ(result.exit_code, 0) << "signal " << result.signal << "\n" << result.err;
+  return result;
 }
+
+bool SocketRig::autopilot_armed() { return end(*autopilot_).out.find("Arming motors") != std::string::npos; }
 
 std::vector<reader::InventoryItem> SocketRig::items() const {
   reader::StoreOptions options;

@@ -68,6 +68,8 @@ class SocketRig {
   std::uint16_t rest_port, stream_port, mavlink_port, pose_port, air_port, rogue_port;
 
  private:
+  // Asks an emulator to end; it must do so well.
+  static ProgramResult end(Program& emulator);
   void write_scene(const Options& options) const;
   void write_board(const Options& options) const;
   [[nodiscard]] std::vector<reader::InventoryItem> items() const;
