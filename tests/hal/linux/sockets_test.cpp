@@ -37,7 +37,10 @@ TEST(TcpStream, TriesAllAddressesOfAName) {
   // localhost is 127.0.0.1 and, on most machines, ::1; the listener has only one of them.
   auto listener = TcpListener::listen("127.0.0.1", 0).value();
   auto stream = open_tcp_stream("localhost", listener.port());
-  ASSERT_TRUE(stream->open().has_value());
+  const auto opened = stream->open();
+  if (!opened && opened.error().code == ErrorCode::not_present)
+    GTEST_SKIP() << "this machine knows no name localhost (no /etc/hosts)";
+  ASSERT_TRUE(opened.has_value()) << describe(opened.error());
   EXPECT_TRUE(eventually([&] { return stream->poll().value() == StreamState::open; }));
 }
 
