@@ -3,6 +3,8 @@
 
 namespace forager::reader {
 
+bool have_sqlite_inventory() { return false; }
+
 hal::Result<std::unique_ptr<InventoryStore>> open_sqlite_inventory(const std::string& path,
                                                                    const StoreOptions&) {
   return hal::fail(hal::ErrorCode::unsupported, "inventory " + path, "open",

@@ -100,6 +100,7 @@ struct StoreOptions {
 // next opening. Errors: not_present (no such file or folder), permission, busy, invalid_argument (create: the
 // file exists), protocol (not one of our files, damaged, or of a later version), unsupported (built without
 // SQLite; the mend names the package), io.
+[[nodiscard]] bool have_sqlite_inventory();  // false: built without SQLite
 [[nodiscard]] hal::Result<std::unique_ptr<InventoryStore>> open_sqlite_inventory(const std::string& path,
                                                                                  const StoreOptions& options);
 [[nodiscard]] inline hal::Result<std::unique_ptr<InventoryStore>> open_sqlite_inventory(

@@ -261,6 +261,8 @@ hal::Result<SqliteAccess> access_for(const std::string& path, StoreMode mode) {
 
 }  // namespace
 
+bool have_sqlite_inventory() { return true; }
+
 hal::Result<std::unique_ptr<InventoryStore>> open_sqlite_inventory(const std::string& path,
                                                                    const StoreOptions& options) {
   const auto access = access_for(path, options.mode);

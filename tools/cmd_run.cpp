@@ -12,6 +12,7 @@
 #include "boards/run.hpp"
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
+#include "reader/inventory_store.hpp"
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/run_loop.hpp"
@@ -58,13 +59,16 @@ hal::Result<Files> make_files(const RunCommand& command, const boards::Scene& sc
     return hal::fail(code_of(error), files.folder, "create output folder", "cannot be created",
                      "Choose another with --output.", error.value());
   files.report = files.folder + "/report.html";
-  files.inventory = files.folder + "/inventory.sqlite";
+  // A simulated run goes without its inventory where SQLite is not built in; a real one is refused later.
+  if (reader::have_sqlite_inventory() || board.kind != boards::BoardKind::sim)
+    files.inventory = files.folder + "/inventory.sqlite";
   files.journal = files.folder + "/journal.txt";
   if (board.kind != boards::BoardKind::sim && std::filesystem::exists(files.inventory, error))
     return hal::fail(hal::ErrorCode::invalid_argument, files.inventory, "create inventory",
                      "is already there",
                      "Choose another folder with --output; an inventory is never overwritten.");
-  for (const char* tail : kInventoryTails) std::filesystem::remove(files.inventory + tail, error);
+  if (!files.inventory.empty())
+    for (const char* tail : kInventoryTails) std::filesystem::remove(files.inventory + tail, error);
   std::filesystem::remove(files.report, error);  // an old page beside a new journal would mislead
   return files;
 }
@@ -140,6 +144,9 @@ int close_run(Run& run, const RunCommand& command, const Files& files, const Run
       exit_code = complain(written.error());
     else if (!command.json)
       text += fmt::format("  {:<16}{}\n", "report", files.report);
+    if (!command.json && files.inventory.empty())
+      text += fmt::format("  {:<16}not kept: built without SQLite; install libsqlite3-dev and build again\n",
+                          "inventory");
   }
   if (const auto written = write_output("-", text); !written) return complain(written.error());
   return exit_code;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "reader/inventory_store.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/scratch_folder.hpp"
 
@@ -131,6 +132,7 @@ TEST_F(RunCommandLine, TheReportIsOnePageThatLoadsNothing) {
 }
 
 TEST_F(RunCommandLine, TheInventoryIsReportedOn) {
+  if (!reader::have_sqlite_inventory()) GTEST_SKIP() << "built without SQLite";
   const json summary = lines_of(run_program(flown({"--json"})).out).back();
   for (const char* name : {"run/inventory.sqlite", "run"}) {
     const ProgramResult report = run_program({"report", folder_.file(name), "--json", "--items"});
@@ -155,6 +157,7 @@ TEST_F(RunCommandLine, WritesNothingWhenAskedTo) {
 }
 
 TEST_F(RunCommandLine, AnInventoryOfARealPlaceIsNeverOverwritten) {
+  if (!reader::have_sqlite_inventory()) GTEST_SKIP() << "built without SQLite";
   ASSERT_EQ(run_program(flown()).exit_code, 0);
   const std::string before = folder_.read("run/inventory.sqlite");
   const std::string board = folder_.write("board.toml", "[board]\nname = \"drone\"\n");
@@ -165,6 +168,7 @@ TEST_F(RunCommandLine, AnInventoryOfARealPlaceIsNeverOverwritten) {
 }
 
 TEST_F(RunCommandLine, SaysOnStderrWhyNothingFlew) {
+  if (!reader::have_sqlite_inventory()) GTEST_SKIP() << "built without SQLite";
   const std::string scene =
       folder_.write("hasty.toml", "base = \"" + kScene + "\"\n[links]\nstart_timeout_s = 1\n");
   const std::string board = folder_.write("board.toml",

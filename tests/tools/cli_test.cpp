@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "reader/inventory_store.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/scratch_folder.hpp"
 
@@ -159,6 +160,7 @@ TEST_F(CommandLine, SaysWhenItCannotWrite) {
 }
 
 TEST_F(CommandLine, ReportsOnInventoriesOnly) {
+  if (!reader::have_sqlite_inventory()) GTEST_SKIP() << "built without SQLite";
   expect_refusal({"report", "nowhere.sqlite"}, kUnavailable,
                  AllOf(HasSubstr("nowhere.sqlite"), HasSubstr("there is no such file")));
   expect_refusal({"report", folder_.write("notes.txt", "not an inventory, whatever its name")}, 1,
