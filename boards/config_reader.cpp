@@ -246,7 +246,9 @@ void find_unused(const ConfigNode& node, const std::string& path, ConfigIssue& i
   if (issue) return;
   if (const auto* members = node.table()) {
     for (const auto& [key, value] : *members) {
-      const std::string full = path.empty() ? key : path + "." + key;
+      std::string full = path;
+      if (!full.empty()) full += '.';
+      full += key;
       if (value.used) {
         find_unused(value, full, issue);
       } else if (!issue) {
