@@ -32,8 +32,9 @@ class MemoryInventory final : public InventoryStore {
     std::vector<InventoryItem> items;
     items.reserve(items_.size());
     for (const auto& entry : items_.entries()) items.push_back(entry.value);
-    std::sort(items.begin(), items.end(),
-              [](const InventoryItem& a, const InventoryItem& b) { return a.epc < b.epc; });
+    std::sort(items.begin(), items.end(), [](const InventoryItem& a, const InventoryItem& b) {
+      return std::ranges::lexicographical_compare(a.epc.bytes(), b.epc.bytes());
+    });
     return items;
   }
 
