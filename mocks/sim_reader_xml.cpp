@@ -9,8 +9,10 @@ namespace {
 constexpr std::array<std::pair<std::string_view, char>, 5> kEntities{
     {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}, {"&apos;", '\''}}};
 
+// An opening tag with a name; closing tags, comments, processing instructions and "<>" are none.
 bool starts_tag(std::string_view text) {
-  return text.size() > 1 && text[1] != '/' && text[1] != '!' && text[1] != '?';
+  constexpr std::string_view kNoName = "/!?> \t\r\n";
+  return text.size() > 1 && kNoName.find(text[1]) == std::string_view::npos;
 }
 
 // Position of the closing tag that belongs to an element already open, elements of the same name inside
