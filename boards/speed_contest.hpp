@@ -28,4 +28,7 @@ void keep_result(const T& value) {
 // std::vector<SpeedContest> speed_<topic>(), declared here and named in boards/speed_contest.cpp.
 [[nodiscard]] std::vector<SpeedContest> speed_contests();
 
+// Tags within a radius: the grid against nanoflann, a million tags. Makes its world when called.
+[[nodiscard]] std::vector<SpeedContest> speed_tag_grid();
+
 }  // namespace forager::boards
