@@ -219,8 +219,11 @@ hal::Result<std::unique_ptr<Run>> Run::prepare(const Scene& scene, const Board& 
                                .journal_wire = options.journal_wire,
                                .counter = options.counter});
   if (!devices) return hal::fail(std::move(devices).error());
-  auto autopilot = flight::MavlinkAutopilot::create((*devices)->autopilot(), journal_of(options),
-                                                    mavlink_config(scene, options.journal_wire), now);
+  auto motors = flight::MotorBay().claim("autopilot");
+  if (!motors) return hal::fail(std::move(motors).error());
+  auto autopilot =
+      flight::MavlinkAutopilot::create((*devices)->autopilot(), journal_of(options),
+                                       mavlink_config(scene, options.journal_wire), now, std::move(*motors));
   if (!autopilot) return hal::fail(std::move(autopilot).error());
   auto store = open_store(options);
   if (!store) return hal::fail(std::move(store).error());

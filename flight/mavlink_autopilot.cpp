@@ -63,8 +63,12 @@ hal::Result<> check(const MavlinkConfig& config) {
 hal::Result<std::unique_ptr<MavlinkAutopilot>> MavlinkAutopilot::create(hal::ByteStream& stream,
                                                                         hal::Journal& journal,
                                                                         const MavlinkConfig& config,
-                                                                        hal::Instant now) {
+                                                                        hal::Instant now,
+                                                                        MotorAuthority motors) {
   FORAGER_TRY(check(config));
+  if (!motors.valid())
+    return hal::fail(hal::ErrorCode::invalid_state, "autopilot", "configure MAVLink",
+                     "nobody gave it the motors");
   std::optional<mavlink::Signing> signing;
   if (config.signing) {
     auto made = mavlink::Signing::create(config.signing->key, config.signing->link_id,
@@ -73,13 +77,14 @@ hal::Result<std::unique_ptr<MavlinkAutopilot>> MavlinkAutopilot::create(hal::Byt
     signing = std::move(*made);
   }
   return std::unique_ptr<MavlinkAutopilot>(
-      new MavlinkAutopilot(stream, journal, config, std::move(signing), now));
+      new MavlinkAutopilot(stream, journal, config, std::move(signing), now, std::move(motors)));
 }
 
 MavlinkAutopilot::MavlinkAutopilot(hal::ByteStream& stream, hal::Journal& journal,
                                    const MavlinkConfig& config, std::optional<mavlink::Signing> signing,
-                                   hal::Instant now)
-    : journal_(&journal),
+                                   hal::Instant now, MotorAuthority motors)
+    : motors_(std::move(motors)),
+      journal_(&journal),
       config_(config),
       link_(stream, journal, config, std::move(signing)),
       telemetry_(config, journal),

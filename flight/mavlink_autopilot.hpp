@@ -14,6 +14,7 @@
 #include "flight/mavlink_setpoint.hpp"
 #include "flight/mavlink_streams.hpp"
 #include "flight/mavlink_telemetry.hpp"
+#include "flight/motor_authority.hpp"
 #include "hal/byte_stream.hpp"
 #include "hal/journal.hpp"
 
@@ -31,12 +32,14 @@ namespace forager::flight {
 // Steady-state updates allocate nothing; a changing link, a new autopilot and refusals do.
 class MavlinkAutopilot final : public Autopilot {
  public:
-  // Borrows stream and journal. Errors: invalid_argument (an interval or time-out that is not positive),
-  // unsupported (a signing key, but built without libcrypto), io.
+  // Borrows stream and journal; owns the motors until it is destroyed. Errors: invalid_argument (an interval
+  // or time-out that is not positive), invalid_state (an authority that was moved from), unsupported (a
+  // signing key, but built without libcrypto), io.
   [[nodiscard]] static hal::Result<std::unique_ptr<MavlinkAutopilot>> create(hal::ByteStream& stream,
                                                                              hal::Journal& journal,
                                                                              const MavlinkConfig& config,
-                                                                             hal::Instant now);
+                                                                             hal::Instant now,
+                                                                             MotorAuthority motors);
 
   void update(hal::Instant now) override;
   [[nodiscard]] const AutopilotState& state() const override { return telemetry_.state(); }
@@ -63,7 +66,7 @@ class MavlinkAutopilot final : public Autopilot {
 
  private:
   MavlinkAutopilot(hal::ByteStream& stream, hal::Journal& journal, const MavlinkConfig& config,
-                   std::optional<mavlink::Signing> signing, hal::Instant now);
+                   std::optional<mavlink::Signing> signing, hal::Instant now, MotorAuthority motors);
 
   void hear(const mavlink::Frame& frame, hal::Instant now);
   void answer_timesync(const mavlink::Frame& frame, hal::Instant now);
@@ -77,6 +80,7 @@ class MavlinkAutopilot final : public Autopilot {
   void begin_mode(std::string_view what, std::uint32_t mode, hal::Instant now);
   void note_outcome(hal::Instant now);
 
+  MotorAuthority motors_;
   hal::Journal* journal_;
   MavlinkConfig config_;
   MavlinkLink link_;

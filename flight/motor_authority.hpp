@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,31 +9,33 @@
 
 namespace forager::flight {
 
-class MotorBay;
-
 // The right to spin one vehicle's motors. Move-only, handed out by a MotorBay to one holder at a time, given
 // back when it is destroyed. Neither an EscBank nor an autopilot bridge can be made without it, so no program
 // that compiles can arm through the autopilot and pulse the ESCs of the same vehicle at once.
 class MotorAuthority {
  public:
-  MotorAuthority(MotorAuthority&& other) noexcept : bay_(std::exchange(other.bay_, nullptr)) {}
-  MotorAuthority& operator=(MotorAuthority&& other) noexcept;
+  MotorAuthority(MotorAuthority&&) noexcept = default;
+  MotorAuthority& operator=(MotorAuthority&& other) noexcept {
+    std::swap(holder_, other.holder_);  // what it held before goes back with `other`
+    return *this;
+  }
   MotorAuthority(const MotorAuthority&) = delete;
   MotorAuthority& operator=(const MotorAuthority&) = delete;
-  ~MotorAuthority() { give_back(); }
+  ~MotorAuthority() {
+    if (holder_) holder_->clear();
+  }
 
   // False only after it was moved from.
-  [[nodiscard]] bool valid() const { return bay_ != nullptr; }
+  [[nodiscard]] bool valid() const { return holder_ != nullptr; }
 
  private:
   friend class MotorBay;
-  explicit MotorAuthority(MotorBay& bay) : bay_(&bay) {}
-  void give_back() noexcept;
+  explicit MotorAuthority(std::shared_ptr<std::string> holder) : holder_(std::move(holder)) {}
 
-  MotorBay* bay_;
+  std::shared_ptr<std::string> holder_;  // empty text: nobody; shared with the bay
 };
 
-// The motors of one vehicle, as a thing that has one owner. Must outlive the authority it hands out.
+// The motors of one vehicle, as a thing that has one owner at a time.
 class MotorBay {
  public:
   MotorBay() = default;
@@ -41,31 +44,17 @@ class MotorBay {
 
   // `who` is for the refusal of the next one who asks. Errors: busy (somebody holds it; says who).
   [[nodiscard]] hal::Result<MotorAuthority> claim(std::string_view who) {
-    if (!holder_.empty())
+    if (!holder_->empty())
       return hal::fail(hal::ErrorCode::busy, "motors", "claim for " + std::string(who),
-                       holder_ + " drives them", "end " + holder_ + " first; never let two drive one motor");
-    holder_ = who.empty() ? "somebody" : who;
-    return MotorAuthority(*this);
+                       "they belong to " + *holder_, "end " + *holder_ + " first");
+    *holder_ = who.empty() ? "somebody" : who;
+    return MotorAuthority(holder_);
   }
   // Who holds it; empty if nobody.
-  [[nodiscard]] const std::string& holder() const { return holder_; }
+  [[nodiscard]] const std::string& holder() const { return *holder_; }
 
  private:
-  friend class MotorAuthority;
-  std::string holder_;
+  std::shared_ptr<std::string> holder_ = std::make_shared<std::string>();
 };
-
-inline void MotorAuthority::give_back() noexcept {
-  if (bay_ != nullptr) bay_->holder_.clear();
-  bay_ = nullptr;
-}
-
-inline MotorAuthority& MotorAuthority::operator=(MotorAuthority&& other) noexcept {
-  if (this != &other) {
-    give_back();
-    bay_ = std::exchange(other.bay_, nullptr);
-  }
-  return *this;
-}
 
 }  // namespace forager::flight

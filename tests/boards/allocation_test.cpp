@@ -73,9 +73,10 @@ struct WatchedRun {
       : devices(make_sim_devices(scene, {.seed = 1}).value()),
         rest(devices->reader_rest()),
         reader(rest, devices->reader_events(), journal, scene.read_plan, advannet_config(scene, sim_board())),
-        autopilot(
-            flight::MavlinkAutopilot::create(devices->autopilot(), journal, mavlink_config(scene, false), now)
-                .value()),
+        autopilot(flight::MavlinkAutopilot::create(devices->autopilot(), journal,
+                                                   mavlink_config(scene, false), now,
+                                                   flight::MotorBay().claim("autopilot").value())
+                      .value()),
         policy(make_policy(scene, 1)),
         loop(robot_config(scene, devices->world()->tags.size()),
              {*autopilot, reader, devices->depth(), devices->pose(), store, journal, nullptr}, *policy) {}

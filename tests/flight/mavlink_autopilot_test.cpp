@@ -271,7 +271,8 @@ TEST(MavlinkAutopilot, RefusesAConfigurationThatCannotWork) {
   hal::NullJournal journal;
   MavlinkConfig config;
   config.setpoint_interval = 0s;
-  const auto made = MavlinkAutopilot::create(line.near(), journal, config, {});
+  const auto made =
+      MavlinkAutopilot::create(line.near(), journal, config, {}, MotorBay().claim("autopilot").value());
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, hal::ErrorCode::invalid_argument);
   EXPECT_NE(hal::describe(made.error()).find("setpoint_interval"), std::string::npos);

@@ -69,7 +69,9 @@ class Flight {
   std::unique_ptr<MavlinkAutopilot> make(hal::Journal& journal) {
     MavlinkConfig config;
     config.origin = GlobalOrigin{52.2, 0.12, 10.0};
-    return std::move(MavlinkAutopilot::create(line_.near(), journal, config, now_).value());
+    return std::move(
+        MavlinkAutopilot::create(line_.near(), journal, config, now_, MotorBay().claim("autopilot").value())
+            .value());
   }
   void see() {
     next_frame_ = now_ + 33ms;
