@@ -58,8 +58,9 @@ struct BrakeStatus {
 //              again; good one: stops, below
 //   halted     locked, locked                        cut     resume() -> engaged
 //
-// From every state halt() leads to halted. A fault found while engaged leads to faulted too. Both faulted:
-// both are told to lock. faulted is left by a person or a supervisor only, never by the fault going away.
+// From every state halt() leads to halted. A fault found while engaged leads to faulted too, one found while
+// halted after resume(). Both faulted: both are told to lock. faulted is left by a person or a supervisor
+// only, never by the fault going away.
 //
 // Stopping with one brake must not become a spin: the vehicle pivots about the wheel that holds. So the good
 // brake is locked, but opened while the yaw rate towards its side is above yaw_limit; if the bad one is stuck
@@ -69,7 +70,8 @@ struct BrakeStatus {
 // Heat never opens a brake: a locked brake that burns its servo still stops the vehicle, an open one does
 // not. The estimate only warns (journal, status), with the time spent above the limit.
 //
-// Every transition is noted in the journal with its reason. update() allocates nothing while the state stays.
+// Every transition is noted in the journal with its reason. update() allocates nothing while the state stays
+// and the actuators answer.
 class BrakePair final : public hal::Halt {
  public:
   // Borrows all three; locks both brakes at once. Half track is BrakeWatchConfig::half_track_m.
@@ -99,26 +101,32 @@ class BrakePair final : public hal::Halt {
   [[nodiscard]] hal::Result<> clear_fault(hal::Instant now);
 
  private:
+  // One brake with what is known of it; the pointers lead into status_.
   struct Side {
     BrakeActuator* actuator;
     BrakeWatch watch;
     BrakeHeatModel heat;
+    BrakeFault* fault;
+    BrakeHeat* told_heat;
+    double* fraction;
     double wanted = 1.0;
   };
 
   void enter(BrakeState state, std::string_view reason, hal::Instant now);
+  void begin_fault(hal::Instant now);
   void decide(hal::Instant now);
   void decide_faulted(hal::Instant now);
-  [[nodiscard]] bool may_press(bool left, hal::Instant now) const;
-  void move(Side& side, BrakeFault& fault, hal::Instant now);
-  void judge(hal::Instant now);
-  void warm(hal::Instant now);
+  [[nodiscard]] bool standing() const;
+  [[nodiscard]] bool may_press(bool left, bool motion_known, hal::Instant now) const;
+  void move(Side& side, hal::Instant now);
+  void watch(Side& side, const Side& other, hal::Instant now);
+  void warm(Side& side, std::string_view name, hal::Instant now);
 
+  BrakeStatus status_;  // before the sides, which point into it
   Side left_;
   Side right_;
   hal::Journal* journal_;
   BrakePairConfig config_;
-  BrakeStatus status_;
   BrakeCommand command_;
   std::optional<VehicleMotion> motion_;
   hal::Instant now_;

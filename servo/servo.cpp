@@ -1,0 +1,74 @@
+#include "servo/servo.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace forager::servo {
+namespace {
+
+hal::Failure refuse(const hal::PwmChannel& channel, std::string_view operation, std::string why) {
+  return hal::fail(hal::ErrorCode::invalid_argument, "servo on " + std::string(channel.name()),
+                   std::string(operation), std::move(why));
+}
+
+}  // namespace
+
+hal::Result<Servo> Servo::create(hal::PwmChannel& channel, PulseMap map, const ServoConfig& config) {
+  if (!(config.slew_per_s > 0.0)) return refuse(channel, "create", "the slew limit is not positive");
+  if (!(config.safe >= map.first() && config.safe <= map.last()))
+    return refuse(
+        channel, "create",
+        fmt::format("the safe place, {}, is not from {} to {}", config.safe, map.first(), map.last()));
+  if (config.longest_step <= hal::Duration::zero())
+    return refuse(channel, "create", "the longest step is not positive");
+  const auto [low, high] = std::minmax(map.points().front().pulse, map.points().back().pulse);
+  if (config.min_pulse <= hal::Duration::zero() || config.min_pulse >= config.max_pulse ||
+      high + config.trim <= config.min_pulse || low + config.trim >= config.max_pulse)
+    return refuse(channel, "create",
+                  fmt::format("end stops {} to {} us leave nothing of the travel {} to {} us",
+                              config.min_pulse / std::chrono::microseconds(1),
+                              config.max_pulse / std::chrono::microseconds(1),
+                              (low + config.trim) / std::chrono::microseconds(1),
+                              (high + config.trim) / std::chrono::microseconds(1)));
+  return Servo(channel, std::move(map), config);
+}
+
+hal::Result<> Servo::move(double target, hal::Instant now) {
+  if (std::isnan(target)) return refuse(*channel_, "move", "not a number was commanded");
+  // A first command has no time behind it: it only tells the servo to be where it is taken to be.
+  const hal::Duration passed =
+      last_ ? std::clamp(now - *last_, hal::Duration::zero(), config_.longest_step) : hal::Duration::zero();
+  last_ = now;
+  const double step = config_.slew_per_s * hal::to_seconds(passed);
+  const double wanted = std::clamp(target, map_.first(), map_.last());
+  const double next = std::isnan(step) ? place_ : std::clamp(wanted, place_ - step, place_ + step);
+  return send(next);
+}
+
+hal::Result<> Servo::jump(double target, hal::Instant now) {
+  if (std::isnan(target)) return refuse(*channel_, "jump", "not a number was commanded");
+  last_ = now;
+  return send(std::clamp(target, map_.first(), map_.last()));
+}
+
+hal::Result<> Servo::send(double place) {
+  const hal::Duration pulse =
+      std::clamp(map_.pulse(place).value() + config_.trim, config_.min_pulse, config_.max_pulse);
+  if (sent_ != pulse) {
+    sent_.reset();  // after a failure nobody knows what the output does
+    FORAGER_TRY(channel_->set_pulse(pulse));
+    sent_ = pulse;
+  }
+  place_ = place;
+  return {};
+}
+
+void Servo::halt() noexcept {
+  sent_.reset();  // send it even if it is the pulse that was sent last: an output may have lost it
+  static_cast<void>(send(config_.safe));
+  if (config_.at_halt == AtHalt::release && channel_->release()) sent_.reset();
+}
+
+}  // namespace forager::servo
