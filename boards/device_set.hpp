@@ -8,6 +8,7 @@
 
 #include "boards/board.hpp"
 #include "boards/scene.hpp"
+#include "boards/world_tags.hpp"
 #include "hal/byte_stream.hpp"
 #include "hal/depth_source.hpp"
 #include "hal/error.hpp"
@@ -30,12 +31,7 @@ struct DeviceTicks {
 // What is known of the simulated world; for summaries and the report.
 struct WorldFacts {
   std::vector<SceneShelf> shelves;
-  struct Tag {
-    std::string epc_hex;
-    hal::Vec3 position;
-    bool wanted = true;
-  };
-  std::vector<Tag> tags;
+  WorldTags tags;
 };
 
 // The devices of one run, whatever stands behind them. The set owns them; drivers borrow.

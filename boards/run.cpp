@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
-#include <unordered_map>
 #include <utility>
 
 #include "boards/policies.hpp"
@@ -131,29 +131,27 @@ class Mission final : public Run {
   static constexpr hal::Duration kStopAllowance =
       std::chrono::seconds(10);  // for the reader to be told to stop
 
+  // No mission reads a large world whole; what it knows of tags grows when it does.
   [[nodiscard]] std::size_t tag_count() const {
-    return devices_->world() != nullptr ? devices_->world()->tags.size() : 4096;
+    constexpr std::size_t kUnknown = 4096;
+    constexpr std::size_t kMost = 1U << 16U;
+    return devices_->world() != nullptr ? std::min(devices_->world()->tags.size(), kMost) : kUnknown;
   }
 
   // Tags of the world that are in the inventory, wanted ones and bystanders apart.
   hal::Result<> count_tags(RunSummary& s) const {
-    const auto items = store_->items();
-    if (!items) return hal::fail(items.error());
     const WorldFacts* world = devices_->world();
     if (world == nullptr) {
+      const auto items = store_->items();
+      if (!items) return hal::fail(items.error());
       s.tags_read = items->size();
       return {};
     }
-    std::unordered_map<std::string_view, bool> wanted;
-    s.tags_present = 0;
-    for (const WorldFacts::Tag& tag : world->tags) {
-      wanted.emplace(tag.epc_hex, tag.wanted);
-      if (tag.wanted) ++*s.tags_present;
-    }
-    for (const reader::InventoryItem& item : *items) {
-      const auto found = wanted.find(item.epc.hex());
-      (found != wanted.end() && found->second ? s.tags_read : s.other_tags_read) += 1;
-    }
+    const auto read = ReadTags::find(world->tags, *store_);
+    if (!read) return hal::fail(read.error());
+    s.tags_present = read->wanted_present;
+    s.tags_read = read->wanted_read;
+    s.other_tags_read = read->others_read;
     return {};
   }
 

@@ -39,7 +39,7 @@ class SocketDevices final : public DeviceSet {
   SocketDevices(const Scene& scene, const Board& board, std::optional<hal::HttpCredentials> credentials,
                 const DeviceOptions& options)
       : world_(build_world(scene, options.seed)),
-        facts_(facts_of(scene, world_)),
+        facts_(facts_of(world_)),
         rest_(hal::make_curl_http_client(
             fmt::format("http://{}:{}", board.reader_host, board.reader_rest_port), std::move(credentials))),
         events_(hal::open_tcp_stream(board.reader_host, board.reader_stream_port)),

@@ -30,11 +30,10 @@ mocks::World build_world(const Scene& scene, std::uint64_t seed) {
   return world;
 }
 
-WorldFacts facts_of(const Scene& scene, const mocks::World& world) {
+WorldFacts facts_of(const mocks::World& world) {
   WorldFacts facts;
-  facts.shelves = scene.world.shelves;
-  facts.tags.reserve(world.tags.size());
-  for (const mocks::Tag& tag : world.tags) facts.tags.push_back({tag.epc_hex, tag.position, tag.wanted});
+  for (const mocks::Box& box : world.obstacles) facts.shelves.push_back({box.min, box.max});
+  facts.tags = WorldTags(world.tags);
   return facts;
 }
 

@@ -11,7 +11,8 @@ namespace forager::boards {
 
 // The simulated warehouse of a scene. The same scene and seed give the same tags in the same places.
 [[nodiscard]] mocks::World build_world(const Scene& scene, std::uint64_t seed);
-[[nodiscard]] WorldFacts facts_of(const Scene& scene, const mocks::World& world);
+// The world must outlive what it gives.
+[[nodiscard]] WorldFacts facts_of(const mocks::World& world);
 
 [[nodiscard]] mocks::SimDepthOptions depth_options(const Scene& scene);
 [[nodiscard]] mocks::SimPoseOptions pose_options(const Scene& scene);

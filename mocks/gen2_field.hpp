@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hal/random.hpp"
@@ -47,7 +48,9 @@ class SimTagField final : public TagField {
   void radio_off(hal::Instant now) override;
   void advance(hal::Instant now, std::vector<AirRead>& out) override;
   [[nodiscard]] const std::string& epc_hex(std::uint32_t tag) const override {
-    return world_->tags[tag].epc_hex;
+    epc_text_.clear();
+    world_->tags.append_epc_hex(tag, epc_text_);
+    return epc_text_;
   }
 
   [[nodiscard]] const FieldStatistics& statistics() const { return statistics_; }
@@ -71,6 +74,7 @@ class SimTagField final : public TagField {
   void watch_power(double t_s);
 
   const World* world_;
+  mutable std::string epc_text_;  // what epc_hex() gave last
   const TrueBody* body_;
   AirParameters air_;
   AirLink link_;

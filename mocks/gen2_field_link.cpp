@@ -78,7 +78,7 @@ TagLink AirLink::link(const AntennaView& antenna, std::uint32_t tag) const {
   TagLink link;
   link.u = kInf;
   if (!antenna.fitted) return link;
-  const hal::Vec3 offset = world_->tags[tag].position - antenna.position_world;
+  const hal::Vec3 offset = world_->tags.position(tag) - antenna.position_world;
   link.range_m = std::sqrt(Axes::dot(offset, offset));
   const double r0_m = r0_m_[tag] * antenna.reach;
   if (!(link.range_m <= air_.power_up_limit * r0_m * fade_.max_amplitude())) return link;
@@ -87,7 +87,7 @@ TagLink AirLink::link(const AntennaView& antenna, std::uint32_t tag) const {
   link.amplitude = fade_.amplitude(tag, antenna.port, antenna.position_world);
   if (air_.occlusion_db > 0.0)
     link.amplitude *= amplitude_of(-air_.occlusion_db *
-                                   obstacles_between(antenna.position_world, world_->tags[tag].position));
+                                   obstacles_between(antenna.position_world, world_->tags.position(tag)));
   link.u = std::max(
       normalised_range(link.range_m, r0_m * link.amplitude, link.pattern_power, air_.pattern_exponent),
       kNearestU);
@@ -98,7 +98,7 @@ TagLink AirLink::link(const AntennaView& antenna, std::uint32_t tag) const {
 double AirLink::hazard(const TagLink& link) const { return expected_answers(link.u) / air_.t0_s; }
 
 double AirLink::hazard_bound(hal::Vec3 body, double slack_m, double max_reach, std::uint32_t tag) const {
-  const hal::Vec3 offset = world_->tags[tag].position - body;
+  const hal::Vec3 offset = world_->tags.position(tag) - body;
   const double nearest_m = std::max(std::sqrt(Axes::dot(offset, offset)) - longest_arm_m_ - slack_m, 0.0);
   const double u = nearest_m / (r0_m_[tag] * max_reach * fade_.max_amplitude());
   if (u > air_.power_up_limit) return 0.0;

@@ -43,7 +43,7 @@ class TagField {
   virtual void radio_off(hal::Instant now) = 0;
   // Appends every reply in (previous advance, now], in time order.
   virtual void advance(hal::Instant now, std::vector<AirRead>& out) = 0;
-  // EPC of a tag, lower-case hexadecimal.
+  // EPC of a tag, lower-case hexadecimal; valid until the next call.
   [[nodiscard]] virtual const std::string& epc_hex(std::uint32_t tag) const = 0;
 };
 

@@ -32,12 +32,21 @@ std::pair<double, double> overlap(double low, double high, double clip_low, doub
 }  // namespace
 
 std::string EpcSequence::next() {
+  std::string text;
+  append_hex(text, next96());
+  return text;
+}
+
+Epc96 EpcSequence::next96() {
   // 8 header | 3 filter | 3 partition | 24 company | 20 item | 38 serial
   const std::uint64_t serial = serial_++ & 0x3FFFFFFFFFULL;
   const std::uint64_t head = (0x30ULL << 6) | (1ULL << 3) | 5ULL;  // 14 bits
   const std::uint64_t high =
       (head << 50) | (std::uint64_t{company_} << 26) | (std::uint64_t{item_} << 6) | (serial >> 32);
-  return fmt::format("{:016x}{:08x}", high, serial & 0xFFFFFFFFULL);
+  Epc96 epc{};
+  for (unsigned i = 0; i < 8; ++i) epc[i] = static_cast<std::uint8_t>(high >> (56U - 8U * i));
+  for (unsigned i = 0; i < 4; ++i) epc[8 + i] = static_cast<std::uint8_t>(serial >> (24U - 8U * i));
+  return epc;
 }
 
 hal::Result<Box> shelf_row(hal::Vec3 start, hal::Vec3 end, double depth_m, double height_m) {
@@ -74,7 +83,7 @@ void add_group(World& world, const BoxGroup& group, EpcSequence& epcs, hal::Rand
     const double x = random.uniform(low.x, high.x);
     const double y = random.uniform(low.y, high.y);
     const double z = random.uniform(low.z, high.z);
-    world.tags.push_back({epcs.next(), {x, y, z}, group.wanted});
+    world.tags.add(epcs.next96(), {x, y, z}, group.wanted);
   }
 }
 

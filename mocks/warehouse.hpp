@@ -21,6 +21,8 @@ class EpcSequence {
       : company_(company & 0xFFFFFFU), item_(item & 0xFFFFFU), serial_(first_serial) {}
   // 24 lower-case hexadecimal digits.
   [[nodiscard]] std::string next();
+  // The same as bytes.
+  [[nodiscard]] Epc96 next96();
 
  private:
   std::uint32_t company_;

@@ -25,6 +25,7 @@ Outcome outcome_of(const ReportData& data) {
   outcome.tags = data.tags.size();
   outcome.read = static_cast<std::size_t>(
       std::count_if(data.tags.begin(), data.tags.end(), [](const auto& tag) { return tag.read; }));
+  if (data.totals) outcome = {data.totals->tags, data.totals->read};
   // On a robot nobody knows where the tags are: what was heard is all there is to say.
   if (data.tags.empty() && !data.tags_over_time.empty()) outcome.read = data.tags_over_time.back().count;
   outcome.duration_s = std::max(0.0, hal::to_seconds(data.ended - data.started));

@@ -55,6 +55,12 @@ struct ReportData {
   hal::Instant ended;
   std::vector<Box> boxes;
   std::vector<Tag> tags;
+  // Of a world with more tags than can be drawn `tags` holds some; how many there are, and were read.
+  struct Totals {
+    std::size_t tags = 0;
+    std::size_t read = 0;
+  };
+  std::optional<Totals> totals;
   std::vector<PathSample> path;  // in time order
   std::optional<double> path_m;  // length flown, where it is known better than from the samples
   std::vector<flight::Decision> decisions;

@@ -251,8 +251,10 @@ void draw_decisions(std::string& out, const ReportData& data, const Frame& frame
 ReportMap draw_map(const ReportData& data) {
   const Frame frame = frame_of(data);
   if (!frame.any()) return {};
-  const auto unread =
-      std::count_if(data.tags.begin(), data.tags.end(), [](const auto& tag) { return !tag.read; });
+  const auto drawn_unread = static_cast<std::size_t>(
+      std::count_if(data.tags.begin(), data.tags.end(), [](const auto& tag) { return !tag.read; }));
+  const std::size_t tags = data.totals ? data.totals->tags : data.tags.size();
+  const std::size_t unread = data.totals ? tags - data.totals->read : drawn_unread;
   ReportMap map;
   map.wide = frame.wide();
   put(map.svg,
@@ -262,7 +264,7 @@ ReportMap draw_map(const ReportData& data) {
       "which {} "
       "were not read, the path flown and {} decisions.</desc>\n",
       units(frame.x(frame.high().x) + kRight), units(frame.y(frame.low().y) + kBottom), data.boxes.size(),
-      data.tags.size(), unread, data.decisions.size());
+      tags, unread, data.decisions.size());
   draw_axes(map.svg, frame);
   draw_boxes(map.svg, data, frame);
   draw_tags(map.svg, data, frame);

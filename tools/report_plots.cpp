@@ -66,7 +66,8 @@ class CountPlot {
  public:
   explicit CountPlot(const ReportData& data) : data_(&data), time_(data) {
     for (const auto& sample : data.tags_over_time) highest_ = std::max(highest_, double{1.0} * sample.count);
-    highest_ = 1.06 * std::max(highest_, static_cast<double>(data.tags.size()));
+    const std::size_t most = data.totals ? data.totals->read : data.tags.size();
+    highest_ = 1.06 * std::max(highest_, static_cast<double>(most));
   }
 
   std::string draw() {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <unordered_set>
 
 namespace forager::tools {
 namespace {
@@ -22,18 +21,31 @@ std::vector<std::pair<std::string, std::string>> facts_of(const boards::RunSumma
   return facts;
 }
 
-void add_world(ReportData& data, const boards::WorldFacts& world, const reader::InventoryStore& inventory,
-               hal::Result<>& outcome) {
-  for (const boards::SceneShelf& shelf : world.shelves) data.boxes.push_back({shelf.min, shelf.max});
-  const auto items = inventory.items();
-  if (!items) {
-    outcome = hal::fail(items.error());
-    return;
+// A browser draws about this many circles without pain; of a larger world, every n-th tag.
+constexpr std::size_t kMostDrawn = 20'000;
+
+std::size_t every_nth(std::size_t count) { return count / (kMostDrawn / 2) + 1; }
+
+void add_tags(ReportData& data, const boards::WorldTags& tags, const std::vector<std::uint32_t>& read) {
+  const bool all = tags.size() <= kMostDrawn;
+  const std::size_t every_read = all ? 1 : every_nth(read.size());
+  const std::size_t every_unread = all ? 1 : every_nth(tags.size());
+  std::size_t seen = 0;
+  for (std::size_t tag = 0; tag < tags.size(); ++tag) {
+    const bool is_read = seen < read.size() && read[seen] == tag;
+    if (is_read ? seen++ % every_read == 0 : tag % every_unread == 0)
+      data.tags.push_back({tags.position(tag), is_read});
   }
-  std::unordered_set<std::string> read;
-  for (const reader::InventoryItem& item : *items) read.insert(item.epc.hex());
-  for (const boards::WorldFacts::Tag& tag : world.tags)
-    data.tags.push_back({tag.position, read.contains(tag.epc_hex)});
+  if (!all) data.totals = {tags.size(), read.size()};
+}
+
+hal::Result<> add_world(ReportData& data, const boards::WorldFacts& world,
+                        const reader::InventoryStore& inventory) {
+  for (const boards::SceneShelf& shelf : world.shelves) data.boxes.push_back({shelf.min, shelf.max});
+  const auto read = boards::ReadTags::find(world.tags, inventory);
+  if (!read) return hal::fail(read.error());
+  add_tags(data, world.tags, read->tags);
+  return {};
 }
 
 }  // namespace
@@ -48,9 +60,7 @@ hal::Result<ReportData> report_of(const boards::Run& run, const boards::RunSumma
   data.end_reason = std::string(to_string(summary.end));
   data.ended = ended;
   if (const boards::WorldFacts* world = run.world()) {
-    hal::Result<> outcome;
-    add_world(data, *world, run.inventory(), outcome);
-    FORAGER_TRY(std::move(outcome));
+    FORAGER_TRY(add_world(data, *world, run.inventory()));
   }
   for (const auto& point : run.path())
     data.path.push_back(

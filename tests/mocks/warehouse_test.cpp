@@ -83,7 +83,8 @@ TEST(Warehouse, ScatterCanBeKeptInsideAShelf) {
   const Box shelf = *shelf_with_face({0.0, 1.75, 0.0}, {10.0, 1.75, 0.0}, 0.6, 2.0);
   add_group(world, {.centre = {0.2, 1.75, 1.3}, .tags = 500, .wanted = false, .within = shelf}, epcs, random);
   double mean_y = 0.0;
-  for (const Tag& tag : world.tags) {
+  for (std::size_t i = 0; i < world.tags.size(); ++i) {
+    const TagList::View tag = world.tags[i];
     EXPECT_FALSE(tag.wanted);
     EXPECT_TRUE(tag.position.x >= 0.0 && tag.position.x <= 0.7);
     EXPECT_TRUE(tag.position.y >= 1.75 && tag.position.y <= 2.25);
