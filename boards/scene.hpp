@@ -115,6 +115,8 @@ struct SceneRadio {
   double rician_k_db = 6.0;        // frozen multipath: power of the direct path over the scattered ones
   double occlusion_db = 0.0;       // loss for each shelf crossed
   double rssi_at_1m_dbm = -51.0;
+  double patience_s = 0.018;           // the radio leaves a port that brought nothing new for so long, median
+  double singulation_s = 1.0 / 300.0;  // one reply at most in this time
   bool operator==(const SceneRadio&) const = default;
 };
 struct SceneWorld {

@@ -51,6 +51,8 @@ SceneRadio read_radio(ConfigReader table) {
   r.power_up_limit = table.number("power_up_limit", r.power_up_limit, {0.1, 100.0});
   r.rician_k_db = table.number("rician_k_db", r.rician_k_db, {-20.0, 100.0});
   r.rssi_at_1m_dbm = table.number("rssi_at_1m_dbm", r.rssi_at_1m_dbm, {-90.0, 0.0});
+  r.patience_s = table.number("patience_s", r.patience_s, {0.001, 60.0});
+  r.singulation_s = table.number("singulation_s", r.singulation_s, {0.0, 1.0});
   r.occlusion_db = table.number("occlusion_db", r.occlusion_db, {0.0, 60.0});
   return r;
 }

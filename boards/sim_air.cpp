@@ -17,6 +17,8 @@ mocks::AirParameters air_of(const Scene& scene) {
   air.rician_k_db = radio.rician_k_db;
   air.occlusion_db = radio.occlusion_db;
   air.rssi_at_1m_dbm = radio.rssi_at_1m_dbm;
+  air.patience_median_s = radio.patience_s;
+  air.singulation_s = radio.singulation_s;
   return air;
 }
 

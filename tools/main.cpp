@@ -11,6 +11,7 @@
 #include "tools/cmd_bench.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_report.hpp"
+#include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
 
 namespace {
@@ -39,6 +40,7 @@ int run_command(int argc, char** argv) {
   add_report_command(app, exit_code);
   add_emulate_command(app, exit_code);
   add_bench_command(app, exit_code);
+  add_reproduce_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
