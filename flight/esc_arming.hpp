@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 #include "hal/time.hpp"
@@ -21,27 +20,28 @@ struct EscArmingTimes {
 // line must carry and whether the ESC may have power; EscBank obeys.
 //
 //   state    line  power  leaves it
-//   low      stop  off    begin() and pulses_before_power sent -> waking
+//   low      stop  off    begin(), and pulses_before_power sent -> waking
 //   waking   stop  on     beeps over -> counting
 //   counting stop  on     pulses_to_arm sent and low_at_least since power -> armed
-//   armed    free  on     reset() -> low
+//   armed    idle or more  reset() -> low
 //
-// Where no switch is named, power is what the operator does; the state machine takes it for given at
-// waking, so low pulses are on the line long before. Everywhere but in armed the line carries the stop pulse:
-// a line that never is above idle cannot start a calibration (SimonK: first pulses of 1460 us or more).
+// Where no switch is named, power is the operator's; low pulses are then on the line from construction on,
+// long before. Everywhere but in armed the line carries the stop pulse: first pulses of 1460 us or more would
+// start a calibration (SimonK).
 class EscArming {
  public:
   enum class State : std::uint8_t { low, waking, counting, armed };
 
   // period: of the line; one pulse per period.
-  EscArming(const EscArmingTimes& times, hal::Duration period) : times_(times), period_(period) {}
+  EscArming(const EscArmingTimes& times, hal::Duration period, hal::Instant now)
+      : times_(times), period_(period) {
+    reset(now);
+  }
 
-  // The line carries the stop pulse since `now`, for the first time or again.
-  void line_low(hal::Instant now);
-  // Asked to arm. Ignored unless low.
-  void begin(hal::Instant now);
-  // Back to low: power off, where it can be switched.
+  // The line carries the stop pulse from `now` on, for the first time or again; power off. From any state.
   void reset(hal::Instant now);
+  // Asked to arm. Ignored unless low.
+  void begin();
   void update(hal::Instant now);
 
   [[nodiscard]] State state() const { return state_; }
@@ -51,12 +51,15 @@ class EscArming {
   [[nodiscard]] std::int64_t pulses_since(hal::Instant from, hal::Instant now) const;
 
  private:
+  void enter(State state, hal::Instant now);
+
   EscArmingTimes times_;
   hal::Duration period_;
   State state_ = State::low;
   bool asked_ = false;
-  std::optional<hal::Instant> low_since_;
+  hal::Instant low_since_;
   hal::Instant powered_;
+  hal::Instant entered_;
 };
 
 [[nodiscard]] std::string_view to_string(EscArming::State state);

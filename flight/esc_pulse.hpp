@@ -32,7 +32,8 @@ struct EscPulses {
 // What goes on the line for a pulse in PWM terms.
 [[nodiscard]] hal::Duration encode_pulse(hal::Duration pwm, EscProtocol protocol);
 
-// 0 is stop; above 0 from idle to full, linear. NaN and values below 0 are stop, above 1 full. PWM terms.
+// Throttle of an armed ESC: 0 is idle, 1 full, linear between them. Below 0 is idle, above 1 full, NaN stop.
+// PWM terms.
 [[nodiscard]] hal::Duration pulse_of(double fraction, const EscPulses& pulses);
 
 }  // namespace forager::flight
