@@ -1,5 +1,6 @@
 # Always needed (all packaged in Debian 12): expected, fmt, pugixml, toml++, CLI11, nlohmann-json.
-# Optional, per feature: libcurl (real reader over HTTP), SQLite (durable inventory), libcrypto (MAVLink signing).
+# Optional, per feature: libcurl (real reader over HTTP), SQLite (durable inventory), libcrypto (MAVLink signing),
+# Highway (vector loops of the simulated air).
 find_package(tl-expected CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(pugixml CONFIG REQUIRED)
@@ -31,3 +32,4 @@ forager_feature(CURL libcurl)
 forager_feature(SQLITE sqlite3)
 forager_feature(CRYPTO libcrypto)
 forager_feature(NANOFLANN nanoflann)
+forager_feature(HIGHWAY libhwy)

@@ -60,6 +60,11 @@ double AntennaPattern::power(hal::Vec3 point) const {
   return beam != nullptr ? beam_power(*beam, point) : table_power(*std::get_if<Table>(&form_), point);
 }
 
+std::optional<AntennaPattern::Beam> AntennaPattern::beam() const {
+  const Beam* const beam = std::get_if<Beam>(&form_);
+  return beam != nullptr ? std::optional(*beam) : std::nullopt;
+}
+
 double AntennaPattern::beam_power(const Beam& beam, hal::Vec3 point) {
   // Written so that NaN falls on the side of 0.
   if (!(point.x > 0.0) || !usable_width(beam.width_h_rad) || !usable_width(beam.width_v_rad)) return 0.0;

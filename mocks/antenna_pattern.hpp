@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -40,13 +41,16 @@ class AntennaPattern {
   // points that are not numbers give 0.
   [[nodiscard]] double power(hal::Vec3 point_antenna) const;
 
- private:
   enum class Shape : unsigned char { cosine_squared, gaussian };
   struct Beam {
     Shape shape;
     double width_h_rad;
     double width_v_rad;
   };
+  // What a formula made it from; nullopt for measured cuts.
+  [[nodiscard]] std::optional<Beam> beam() const;
+
+ private:
   struct Table {
     std::vector<PatternSample> azimuth;
     std::vector<PatternSample> elevation;

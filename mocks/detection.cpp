@@ -1,5 +1,6 @@
 #include "mocks/detection.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,6 +9,27 @@ namespace forager::mocks {
 namespace {
 
 constexpr double kLn3 = 1.0986122886681098;
+// log2(3) as the nearest double and what is missing there.
+constexpr double kLog2Of3 = 1.584962500721156;
+constexpr double kLog2Of3Rest = 1.0579781240112554e-16;
+// Twice 2^-t is below half the smallest number from here on.
+constexpr double kNothingLeft = 1080.0;
+
+// 2 / (1 + 3^(u + rest)) for rest far below u.
+double compensated(double u, double rest) {
+  const double t = u * kLog2Of3;
+  if (!(t < kNothingLeft)) return 0.0;
+  const double t_rest = std::fma(u, kLog2Of3, -t) + (u * kLog2Of3Rest + rest * kLog2Of3);
+  // tail + tail_rest = 2^-(t + t_rest), sum + sum_rest = 1 + tail + tail_rest: only exp2 and the last line
+  // round.
+  const double tail = std::exp2(-t);
+  const double tail_rest = -tail * (t_rest * std::numbers::ln2);
+  const double sum = 1.0 + tail;
+  const double sum_rest = (tail - (sum - 1.0)) + tail_rest;
+  const double quotient = 2.0 * tail / sum;
+  const double remainder = std::fma(-quotient, sum, 2.0 * tail) + (2.0 * tail_rest - quotient * sum_rest);
+  return std::min(quotient + remainder / sum, 1.0);
+}
 
 }  // namespace
 
@@ -26,6 +48,18 @@ double detection_probability(double u) {
   if (!(u >= 0.0)) return 0.0;
   const double tail = std::exp(-u * kLn3);
   return 2.0 * tail / (1.0 + tail);
+}
+
+double detection_probability_compensated_u(double u) {
+  if (!(u >= 0.0)) return 0.0;
+  return compensated(u, 0.0);
+}
+
+double detection_probability_compensated(double u_squared) {
+  if (!(u_squared >= 0.0)) return 0.0;
+  const double u = std::sqrt(u_squared);
+  if (!(u > 0.0 && u <= kNothingLeft)) return compensated(u, 0.0);
+  return compensated(u, std::fma(-u, u, u_squared) / (2.0 * u));
 }
 
 double expected_answers(double u) {

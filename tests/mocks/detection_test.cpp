@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <limits>
+#include <string>
 
 #include "mocks/antenna_pattern.hpp"
 
@@ -41,6 +44,41 @@ TEST(Detection, AgreesWithExtendedPrecisionDownToTheLastRepresentableTail) {
     EXPECT_LE(std::abs(static_cast<double>(detection_probability(u) / probability - 1.0L)), bound) << u;
     EXPECT_LE(std::abs(static_cast<double>(expected_answers(u) / exact - 1.0L)), bound) << u;
   }
+}
+
+// tests/data/detection/curve.csv: 298 bits, kept to 105.
+TEST(Detection, CompensatedStaysWithinTwoUlpOfTheExactCurve) {
+  std::ifstream file(FORAGER_TEST_DATA "/detection/curve.csv");
+  std::string line;
+  std::size_t rows = 0;
+  double worst_ulp = 0.0;
+  while (std::getline(file, line)) {
+    double x = 0.0, high = 0.0, low = 0.0;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &x, &high, &low) != 3) continue;
+    ++rows;
+    const double ulp = std::nextafter(high, 2.0) - high;
+    worst_ulp = std::max(worst_ulp, std::abs((detection_probability_compensated(x) - high) - low) / ulp);
+    // The rounding of sqrt(x) is half of what the plain way loses in the tail.
+    EXPECT_NEAR(detection_probability(std::sqrt(x)) / high, 1.0, (5.0 + 2.2 * std::sqrt(x)) * 0x1p-52) << x;
+  }
+  EXPECT_EQ(rows, 1024U);
+  EXPECT_LE(worst_ulp, 2.2);
+  EXPECT_GT(worst_ulp, 0.5);  // below that, nothing was compared
+}
+
+TEST(Detection, CompensatedReachesTheEndsOfTheNumberRange) {
+  EXPECT_EQ(detection_probability_compensated(0.0), 1.0);
+  EXPECT_EQ(detection_probability_compensated(5e-324), 1.0);
+  EXPECT_EQ(detection_probability_compensated(kInf), 0.0);
+  EXPECT_EQ(detection_probability_compensated(kNaN), 0.0);
+  EXPECT_EQ(detection_probability_compensated(-1.0), 0.0);
+  EXPECT_EQ(detection_probability_compensated_u(1e308), 0.0);
+  // 2 * 3^-677 is a denormal of some digits.
+  EXPECT_NEAR(detection_probability_compensated_u(677.0) / std::ldexp(2.0 * std::exp2(-53.0196136), -1020),
+              1.0, 1e-2);
+  for (const double u : {0.1, 1.0, 7.3, 60.0})
+    EXPECT_NEAR(detection_probability_compensated_u(u) / detection_probability_compensated(u * u), 1.0,
+                1e-13);
 }
 
 TEST(Detection, ExpectedAnswersAndProbabilityAreTheSameThing) {
