@@ -17,6 +17,8 @@ struct AccuracyRow {
   double max_abs_error = 0.0;  // largest |answer - reference|, in the unit the name or the reference says
   double max_rel_error = 0.0;  // largest |answer - reference| / |reference|, where the reference is not tiny
   std::string reference;       // what the errors are against, never another approximation
+  std::uint64_t asked = 0;     // answers counted; 0: failures were not
+  std::uint64_t failures = 0;  // of them no number (left out of the errors) or worse than the topic allows
   std::function<void()> work = {};  // does `items` items; empty: nothing to time
   double items = 1.0;
 };
@@ -32,5 +34,8 @@ struct AccuracyOptions {
 [[nodiscard]] std::vector<AccuracyRow> accuracy_rows(const AccuracyOptions& options);
 
 [[nodiscard]] std::vector<AccuracyRow> accuracy_detection(const AccuracyOptions& options);
+[[nodiscard]] std::vector<AccuracyRow> accuracy_guard(const AccuracyOptions& options);
+[[nodiscard]] std::vector<AccuracyRow> accuracy_planner(const AccuracyOptions& options);
+[[nodiscard]] std::vector<AccuracyRow> accuracy_relative_pose(const AccuracyOptions& options);
 
 }  // namespace forager::boards
