@@ -1,5 +1,5 @@
 # Tests of the frame itself: real backends, the include rule, the installed package.
-forager_tests(hal/linux LINKS forager_hal_linux forager_hal)
+forager_tests(hal/linux LINKS forager_hal_linux forager_hal forager_mocks)
 if(NOT FORAGER_HAVE_CURL)
   forager_tests(hal/linux/absent LINKS forager_hal_linux)
 elseif(FORAGER_HAVE_CRYPTO)
