@@ -19,8 +19,6 @@ constexpr int kHaltCopies = 3;
 constexpr std::string_view kGuided = "guided mode";
 constexpr std::string_view kLanding = "landing";
 
-std::uint32_t boot_ms(hal::Instant now) { return static_cast<std::uint32_t>(hal::to_milliseconds(now)); }
-
 mavlink::CommandLong set_mode(std::uint32_t mode) {
   mavlink::CommandLong command;
   command.command = mavlink::command::kDoSetMode;
@@ -91,6 +89,7 @@ MavlinkAutopilot::MavlinkAutopilot(hal::ByteStream& stream, hal::Journal& journa
       request_(config),
       streams_(config),
       setpoint_(config.setpoint_interval),
+      attitude_(config.attitude_interval),
       deadman_(config.deadman),
       now_(now) {}
 
@@ -105,19 +104,22 @@ void MavlinkAutopilot::update(hal::Instant now) {
     next_origin_.reset();
   }
   if (deadman_.update(now)) {
-    setpoint_.clear();
+    clear_setpoint();
     journal_->note(now, kSource, "deadman expired: heartbeats and setpoints stop");
   }
+  if (attitude_.update(now)) journal_->note(now, kSource, "attitude setpoint ran out");
   if (setpoint_.update(now)) journal_->note(now, kSource, "setpoint ran out");
   request_.update(state(), telemetry_.last_warning(), now);
   send_heartbeat(now);
   send_requests(now);
   send_streams_and_origin(now);
   send_setpoint(now);
+  send_attitude(now);
   note_outcome(now);
 }
 
 void MavlinkAutopilot::hear(const mavlink::Frame& frame, hal::Instant now) {
+  if (frame.id == mavlink::CommandLong::kId) return hear_command(frame, now);
   if (!telemetry_.take(frame, now)) return;
   streams_.heard(frame.id, now);
   switch (frame.id) {
@@ -196,25 +198,6 @@ void MavlinkAutopilot::send_streams_and_origin(hal::Instant now) {
   link_.send(origin, now);
 }
 
-// ArduCopter ignores setpoints outside GUIDED without a word; there is no use in sending them then.
-void MavlinkAutopilot::send_setpoint(hal::Instant now) {
-  if (!deadman_.alive() || !link_.is_open() || !state().link_up || !state().guided) return;
-  auto target = setpoint_.due(now);
-  if (!target) return;
-  target->time_boot_ms = boot_ms(now);
-  target->target_system = telemetry_.target_sysid();
-  target->target_component = telemetry_.target_compid();
-  link_.send(*target, now);
-}
-
-void MavlinkAutopilot::set_position(const PositionSetpoint& setpoint) {
-  if (!setpoint_.set(setpoint)) journal_->note(now_, kSource, "position setpoint is not finite: dropped");
-}
-
-void MavlinkAutopilot::set_velocity(const VelocitySetpoint& setpoint) {
-  if (!setpoint_.set(setpoint)) journal_->note(now_, kSource, "velocity setpoint is not finite: dropped");
-}
-
 void MavlinkAutopilot::begin(std::string_view what, const mavlink::CommandLong& command, hal::Instant now) {
   request_.begin(what, command, now);
   noted_ = RequestState::pending;
@@ -277,7 +260,8 @@ void MavlinkAutopilot::send_vision(const hal::PoseSample& sample) {
 
 void MavlinkAutopilot::halt() noexcept {
   try {
-    setpoint_.clear();
+    clear_setpoint();
+    if (rolls_) return stop_motors_at_once();
     const bool pending = request_.state() == RequestState::pending;
     if (pending && request_.what() == kLanding) return;
     if (!state().guided && !(pending && request_.what() == kGuided)) return;

@@ -8,6 +8,8 @@
 
 #include "flight/autopilot.hpp"
 #include "flight/deadman.hpp"
+#include "flight/drive_autopilot.hpp"
+#include "flight/mavlink_attitude.hpp"
 #include "flight/mavlink_config.hpp"
 #include "flight/mavlink_link.hpp"
 #include "flight/mavlink_request.hpp"
@@ -27,10 +29,11 @@ namespace forager::flight {
 // Silent before the first feed_deadman(), but for requests. When the deadman expires, heartbeats stop and the
 // setpoint is dropped; a request under way is still brought to its end, as it may be the one to land.
 //
-// halt() asks to land only while the vehicle is under our command (GUIDED): a pilot who took it keeps it.
+// halt() stops the motors of a vehicle that was driven by attitude, as it stands on its wheels. Otherwise it
+// asks to land, and only while the vehicle is under our command (GUIDED): a pilot who took it keeps it.
 //
 // Steady-state updates allocate nothing; a changing link, a new autopilot and refusals do.
-class MavlinkAutopilot final : public Autopilot {
+class MavlinkAutopilot final : public DriveAutopilot {
  public:
   // Borrows stream and journal; owns the motors until it is destroyed. Errors: invalid_argument (an interval
   // or time-out that is not positive), invalid_state (an authority that was moved from), unsupported (a
@@ -55,7 +58,18 @@ class MavlinkAutopilot final : public Autopilot {
 
   void set_position(const PositionSetpoint& setpoint) override;
   void set_velocity(const VelocitySetpoint& setpoint) override;
-  void clear_setpoint() override { setpoint_.clear(); }
+  void clear_setpoint() override {
+    setpoint_.clear();
+    attitude_.clear();
+  }
+
+  void set_attitude(const AttitudeSetpoint& setpoint) override;
+  [[nodiscard]] std::optional<double> take_yaw_rate() override;
+  [[nodiscard]] hal::Instant attitude_heard() const override {
+    return telemetry_.attitude_at().value_or(hal::Instant::min());
+  }
+  [[nodiscard]] bool stop_heard() const override { return stop_heard_; }
+  void request_stop_motors(hal::Instant now) override;
 
   // Not sent: what comes sooner than the vision interval after the one before, and what is not finite.
   void send_vision(const hal::PoseSample& sample) override;
@@ -69,6 +83,7 @@ class MavlinkAutopilot final : public Autopilot {
                    std::optional<mavlink::Signing> signing, hal::Instant now, MotorAuthority motors);
 
   void hear(const mavlink::Frame& frame, hal::Instant now);
+  void hear_command(const mavlink::Frame& frame, hal::Instant now);
   void answer_timesync(const mavlink::Frame& frame, hal::Instant now);
   [[nodiscard]] bool is_for_us(std::uint8_t sysid, std::uint8_t compid) const;
   void send_command(mavlink::CommandLong command, hal::Instant now);
@@ -76,6 +91,8 @@ class MavlinkAutopilot final : public Autopilot {
   void send_requests(hal::Instant now);
   void send_streams_and_origin(hal::Instant now);
   void send_setpoint(hal::Instant now);
+  void send_attitude(hal::Instant now);
+  void stop_motors_at_once();
   void begin(std::string_view what, const mavlink::CommandLong& command, hal::Instant now);
   void begin_mode(std::string_view what, std::uint32_t mode, hal::Instant now);
   void note_outcome(hal::Instant now);
@@ -88,6 +105,10 @@ class MavlinkAutopilot final : public Autopilot {
   MavlinkRequest request_;
   MavlinkStreams streams_;
   MavlinkSetpoint setpoint_;
+  MavlinkAttitude attitude_;
+  bool rolls_ = false;  // the newest setpoint was an attitude: it stands on its wheels
+  bool stop_heard_ = false;
+  std::optional<hal::Instant> yaw_rate_taken_;
   Deadman deadman_;
   hal::Instant now_;  // of the newest update
   std::optional<hal::Instant> next_heartbeat_;

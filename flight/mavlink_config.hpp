@@ -40,6 +40,7 @@ struct MavlinkConfig {
   hal::Duration link_timeout = 3s;     // no heartbeat for so long: the autopilot is gone
   hal::Duration pose_timeout = 500ms;  // position and attitude no older than this
   hal::Duration setpoint_interval = 100ms;
+  hal::Duration attitude_interval = 20ms;  // of attitude and thrust
   hal::Duration vision_interval = 20ms;  // at least; ArduPilot drops what comes faster than 50 Hz
 
   hal::Duration command_timeout = 1s;  // until an unanswered command is sent again

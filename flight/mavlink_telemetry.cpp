@@ -114,6 +114,7 @@ void MavlinkTelemetry::take_attitude(const mavlink::Attitude& attitude, hal::Ins
   state_.pose_world.yaw_rad = world.yaw_rad;
   state_.pose_world.pitch_rad = world.pitch_rad;
   state_.pose_world.roll_rad = world.roll_rad;
+  if (std::isfinite(attitude.yawspeed)) yaw_rate_rad_s_ = -static_cast<double>(attitude.yawspeed);
   attitude_at_ = now;
 }
 

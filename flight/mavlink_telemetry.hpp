@@ -28,6 +28,9 @@ class MavlinkTelemetry {
   [[nodiscard]] bool has_target() const { return sysid_.has_value(); }
   [[nodiscard]] std::uint8_t target_sysid() const { return sysid_.value_or(0); }
   [[nodiscard]] std::uint8_t target_compid() const { return compid_; }
+  // Turn rate of the newest ATTITUDE, radians/s, positive left, and when it came.
+  [[nodiscard]] double yaw_rate_rad_s() const { return yaw_rate_rad_s_; }
+  [[nodiscard]] std::optional<hal::Instant> attitude_at() const { return attitude_at_; }
   // When the newest text of severity warning or worse came; with state().last_text.
   [[nodiscard]] std::optional<hal::Instant> last_warning() const { return last_warning_; }
 
@@ -53,6 +56,7 @@ class MavlinkTelemetry {
   bool link_was_up_ = false;
   std::optional<hal::Instant> position_at_;
   std::optional<hal::Instant> attitude_at_;
+  double yaw_rate_rad_s_ = 0.0;
   std::optional<hal::Instant> last_warning_;
   std::uint16_t chunk_id_ = 0;  // of the text being put together; 0: none
 };

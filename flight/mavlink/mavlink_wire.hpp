@@ -138,6 +138,14 @@ inline constexpr std::uint16_t kPositionAndYaw = kIgnoreVelocity | kIgnoreAccele
 inline constexpr std::uint16_t kVelocityAndYawRate = kIgnorePosition | kIgnoreAcceleration | kIgnoreYaw;
 }  // namespace target_mask
 
+// ATTITUDE_TARGET_TYPEMASK: a set bit means "ignore". ArduCopter wants all three rates or none, and drops a
+// message that ignores thrust.
+namespace attitude_mask {
+inline constexpr std::uint8_t kIgnoreRates = 0x07;
+inline constexpr std::uint8_t kIgnoreThrottle = 0x40;
+inline constexpr std::uint8_t kIgnoreAttitude = 0x80;
+}  // namespace attitude_mask
+
 namespace severity {  // MAV_SEVERITY, smaller is worse
 inline constexpr std::uint8_t kCritical = 2;
 inline constexpr std::uint8_t kError = 3;
