@@ -48,4 +48,6 @@ void DwellSchedule::prolong(double now_s) {
   dwell_.end_s = std::clamp(now_s + patience_s_, dwell_.end_s, latest_end_s_);
 }
 
+void DwellSchedule::leave(double now_s) { dwell_.end_s = std::clamp(now_s, dwell_.start_s, latest_end_s_); }
+
 }  // namespace forager::mocks

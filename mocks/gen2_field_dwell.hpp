@@ -30,6 +30,10 @@ class DwellSchedule {
   void advance();
   // Something new answered at now_s: stay for another patience.
   void prolong(double now_s);
+  // The visit ends at now_s, earlier or later than planned: a reader leaves between two rounds.
+  void leave(double now_s);
+  // No visit lasts longer than to here, whatever answers: max_dwell, or the end of the on-time.
+  [[nodiscard]] double latest_end_s() const { return latest_end_s_; }
   [[nodiscard]] const Dwell& dwell() const { return dwell_; }
 
  private:

@@ -48,7 +48,7 @@ std::span<const std::uint32_t> SlotRound::open_slot(hal::Random& random) {
     const std::size_t at = waiting_ + i;
     std::swap(tags_[at], tags_[at + random.below(tags_.size() - at)]);
   }
-  return {tags_.data() + waiting_, answering_};
+  return answering();
 }
 
 void SlotRound::remove_answering(std::size_t i) {
@@ -75,11 +75,6 @@ void SlotRound::heard_one(std::size_t i) {
   // Whoever was drowned out by it is still there: the reader learns of it at the end.
   if (answering_ > 0) collision_in_frame_ = true;
   close(false);
-}
-
-void SlotRound::heard_garbage() {
-  remove_answering(0);
-  heard_collision();
 }
 
 void SlotRound::close(bool empty) {

@@ -33,13 +33,17 @@ class SlotRound {
   [[nodiscard]] SlotCommand command() const { return command_; }
   std::span<const std::uint32_t> open_slot(hal::Random& random);
 
+  [[nodiscard]] std::span<const std::uint32_t> answering() const {
+    return {tags_.data() + waiting_, answering_};
+  }
+  // The i-th of those that answered lost its power: it leaves the round before it is heard.
+  void leave(std::size_t i) { remove_answering(i); }
+
   // The reader's verdict closes the slot.
   void heard_nothing();
   void heard_collision();
   // One tag, the i-th of those that answered; it leaves the round, the others wait.
   void heard_one(std::size_t i);
-  // Something that cannot be told, from a single tag that leaves the round: a collision to the reader.
-  void heard_garbage();
 
   [[nodiscard]] bool over() const { return over_; }
   [[nodiscard]] std::size_t tags_left() const { return tags_.size(); }
