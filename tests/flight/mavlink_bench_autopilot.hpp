@@ -114,7 +114,9 @@ class AutopilotBench {
 
  private:
   std::unique_ptr<MavlinkAutopilot> make(const MavlinkConfig& config) {
-    return std::move(MavlinkAutopilot::create(line_.near(), journal_, config, now_).value());
+    return std::move(
+        MavlinkAutopilot::create(line_.near(), journal_, config, now_, MotorBay().claim("autopilot").value())
+            .value());
   }
   void listen() {
     std::array<std::byte, 2048> bytes;
