@@ -7,6 +7,7 @@ namespace forager::boards {
 std::vector<SpeedContest> speed_contests() {
   using Topic = std::vector<SpeedContest> (*)();
   constexpr Topic kTopics[] = {
+      speed_detection,
       speed_tag_grid,
   };
   std::vector<SpeedContest> contests;

@@ -28,6 +28,10 @@ void keep_result(const T& value) {
 // std::vector<SpeedContest> speed_<topic>(), declared here and named in boards/speed_contest.cpp.
 [[nodiscard]] std::vector<SpeedContest> speed_contests();
 
+// Probability of detection of pairs of tag and antenna: by vectors, against the published plugin's formula as
+// it is written. Both held to the exact value.
+[[nodiscard]] std::vector<SpeedContest> speed_detection();
+
 // Tags within a radius: the grid against nanoflann, a million tags. Makes its world when called.
 [[nodiscard]] std::vector<SpeedContest> speed_tag_grid();
 
