@@ -8,6 +8,9 @@ std::vector<AccuracyRow> accuracy_rows(const AccuracyOptions& options) {
   using Topic = std::vector<AccuracyRow> (*)(const AccuracyOptions&);
   constexpr Topic kTopics[] = {
       accuracy_detection,
+      accuracy_guard,
+      accuracy_planner,
+      accuracy_relative_pose,
   };
   std::vector<AccuracyRow> rows;
   for (const Topic topic : kTopics) {

@@ -8,6 +8,7 @@ std::vector<StressCase> stress_cases() {
   using Topic = std::vector<StressCase> (*)();
   constexpr Topic kTopics[] = {
       stress_detection,
+      stress_geometry,
   };
   std::vector<StressCase> cases;
   for (const Topic topic : kTopics) {

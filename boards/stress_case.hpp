@@ -37,5 +37,6 @@ class Worst {
 [[nodiscard]] std::vector<StressCase> stress_cases();
 
 [[nodiscard]] std::vector<StressCase> stress_detection();
+[[nodiscard]] std::vector<StressCase> stress_geometry();
 
 }  // namespace forager::boards

@@ -43,7 +43,7 @@ struct TurnThenDrive {
     double turn_rad = 0.0;
     double drive_m = 0.0;
     bool operator==(const Rest&) const = default;
-  } rest;
+  } rest = {};
 
   // Counter-clockwise positive: left brake +, right brake -.
   [[nodiscard]] double signed_turn_rad() const { return brake == Brake::right ? -turn_rad : turn_rad; }
@@ -78,8 +78,8 @@ struct TurnConfig {
 };
 
 struct TurnPlan {
-  TurnThenDrive left;  // about the left wheel, whether allowed or not
-  TurnThenDrive right;
+  TurnThenDrive left = {};  // about the left wheel, whether allowed or not
+  TurnThenDrive right = {};
   TurnThenDrive
       chosen;  // the allowed one with the smaller turn, left if they are equal; valid if no_way is none
   NoWay no_way = NoWay::none;
