@@ -1,6 +1,6 @@
 # Always needed (all packaged in Debian 12): expected, fmt, pugixml, toml++, CLI11, nlohmann-json.
 # Optional, per feature: libcurl (real reader over HTTP), SQLite (durable inventory), libcrypto (MAVLink signing),
-# Highway (vector loops of the simulated air).
+# Highway (vector loops of the simulated air), libgpiod 1 or 2 (GPIO lines).
 find_package(tl-expected CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(pugixml CONFIG REQUIRED)
@@ -33,3 +33,4 @@ forager_feature(SQLITE sqlite3)
 forager_feature(CRYPTO libcrypto)
 forager_feature(NANOFLANN nanoflann)
 forager_feature(HIGHWAY libhwy)
+forager_feature(GPIOD libgpiod)

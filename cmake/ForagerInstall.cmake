@@ -33,6 +33,7 @@ set(vendor_PkgConfig::CURL "pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libc
 set(vendor_PkgConfig::SQLITE "pkg_check_modules(SQLITE REQUIRED IMPORTED_TARGET sqlite3)" sqlite3)
 set(vendor_PkgConfig::CRYPTO "pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET libcrypto)" libcrypto)
 set(vendor_PkgConfig::HIGHWAY "pkg_check_modules(HIGHWAY REQUIRED IMPORTED_TARGET libhwy)" libhwy)
+set(vendor_PkgConfig::GPIOD "pkg_check_modules(GPIOD REQUIRED IMPORTED_TARGET libgpiod)" libgpiod)
 
 set(vendors "")
 set(archives "")
