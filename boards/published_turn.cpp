@@ -21,13 +21,15 @@ PublishedTurn published_turn(servo::Target target, Reading reading) {
   double nearest = std::numeric_limits<double>::infinity();
   out.turn_rad = std::numeric_limits<double>::quiet_NaN();
   for (const double sign : {1.0, -1.0}) {
-    const double x_turned = (-b + sign * root) / (2.0 * a);            // 6.8
-    const double y_beside = std::sqrt(kR * kR - x_turned * x_turned);  // 6.4
-    for (const double y_turned : {y_beside, -y_beside}) {
+    const double x_turned = (-b + sign * root) / (2.0 * a);          // 6.8
+    const double beside = std::sqrt(kR * kR - x_turned * x_turned);  // 6.4
+    const double across = (kR * kR - x_turned * x) / y;              // 6.5
+    const bool mended = reading == Reading::mended;
+    for (const double y_turned : {mended ? across : beside, mended ? across : -beside}) {
       const double away = std::hypot(x_turned, y_turned + kR);
       if (!(away < nearest)) continue;
       nearest = away;
-      if (reading == Reading::mended) out.drive_m = std::hypot(x - x_turned, y - y_turned);
+      if (mended) out.drive_m = std::hypot(x - x_turned, y - y_turned);
       const double turn = std::atan2(x_turned, -y_turned);  // from S_i = (0, -r) about O
       out.turn_rad = turn < 0.0 ? turn + 2.0 * hal::kPi : turn;
     }

@@ -10,7 +10,8 @@ namespace forager::boards {
 
 enum class Reading : std::uint8_t {
   as_printed,
-  mended,  // c = r^4 - r^2 y^2 in 6.7, and 6.10 measured from S'_i: what remains is the choice of the point
+  mended,  // c = r^4 - r^2 y^2 in 6.7, the other coordinate by 6.5 with x of S'_i, 6.10 measured from S'_i:
+           // what remains is the division by y and the choice of the point
 };
 
 struct PublishedTurn {
