@@ -11,15 +11,30 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kPoseAge_s = 0.005;
-// Bounds hold within kBoundSlack_m and are renewed after kBoundMove_m, looked at once per draw or dwell: the
-// difference is what the body may move in between, 0.25 m in a patience of some 50 ms.
+// While the radio listens the body is looked at this often at least.
+constexpr double kLook_s = 0.02;
+// Bounds hold within kBoundSlack_m and are renewed after kBoundMove_m: the difference is what the body may
+// move between two looks.
 constexpr double kBoundSlack_m = 0.5;
 constexpr double kBoundMove_m = 0.25;
-// Power to counted tags is looked at this often at most, and only after the body moved; short against the 2 s
-// that S2 flags outlast power at least.
-constexpr double kPowerWatch_s = 0.5;
-constexpr double kPowerWatchMove_m = 0.05;
-constexpr double kPowerWatchTurn_rad = 0.035;
+// What an antenna may hear holds within kTurnSlack_rad and is renewed after kTurnMove_rad; the difference
+// between two looks is a turn of 140 degrees a second.
+constexpr double kTurnSlack_rad = 0.1;
+constexpr double kTurnMove_rad = 0.05;
+// Silent tags are left out for this long; shorter than S2 and S3 flags outlast power.
+constexpr double kSilence_s = 1.0;
+
+double distance2(hal::Vec3 a, hal::Vec3 b) {
+  const hal::Vec3 d = a - b;
+  return d.x * d.x + d.y * d.y + d.z * d.z;
+}
+
+// Upper bound of the angle between two attitudes.
+double turn_between(const hal::Pose& a, const hal::Pose& b) {
+  double yaw = std::abs(a.yaw_rad - b.yaw_rad);
+  if (yaw > hal::kPi) yaw = std::abs(hal::angle_difference(a.yaw_rad, b.yaw_rad));
+  return yaw + std::abs(a.pitch_rad - b.pitch_rad) + std::abs(a.roll_rad - b.roll_rad);
+}
 
 }  // namespace
 
@@ -32,97 +47,87 @@ SimTagField::SimTagField(const World& world, const TrueBody& body, std::vector<A
       flags_(world.tags.size(), air, hal::Random::stream(seed, 2).next()),
       schedule_(air, hal::Random::stream(seed, 3).next()),
       random_(hal::Random::stream(seed, 4)),
-      heard_in_(world.tags.size(), 0) {
-  candidates_.reserve(world.tags.size());
-}
+      nearby_(world, link_, air),
+      powered_(world.tags.size()),
+      heard_in_(world.tags.size(), 0) {}
 
 double SimTagField::seconds(hal::Instant now) {
   if (!epoch_) epoch_ = now;
   return hal::to_seconds(now - *epoch_);
 }
 
-void SimTagField::sample_body(double now_s) {
-  previous_pose_ = now_s > now_s_ ? pose_ : previous_pose_;
-  previous_s_ = now_s > now_s_ ? now_s_ : previous_s_;
-  pose_ = body_->state().pose;
-  now_s_ = now_s;
-}
-
 void SimTagField::radio_on(const RadioSettings& settings, hal::Instant now) {
   if (on_) radio_off(now);
-  sample_body(seconds(now));
-  previous_pose_ = pose_;
+  const hal::Pose pose = body_->state().pose;
+  track_.start(seconds(now), pose);
   settings_ = settings;
   on_ = !settings_.ports.empty();
   if (!on_) return;
-  port_views_.reserve(settings_.ports.size());
   max_reach_ = 0.0;
   for (const RadioPort& port : settings_.ports)
-    max_reach_ = std::max(max_reach_, link_.view(pose_, port).reach);
-  bounds_at_.reset();
-  power_watched_at_.reset();
-  schedule_.start(settings_, now_s_);
+    max_reach_ = std::max(max_reach_, link_.view(pose, port).reach);
+  ears_.assign(settings_.ports.size(), Ear{});
+  nearby_at_.reset();
+  powered_.forget();
+  schedule_.start(settings_, track_.now_s());
   begin_dwell();
 }
 
 void SimTagField::radio_off(hal::Instant now) {
   if (!on_) return;
   on_ = false;
-  const double now_s = seconds(now);
-  for (std::uint32_t tag = 0; tag < world_->tags.size(); ++tag) flags_.set_power(tag, false, now_s);
+  powered_.all_off(seconds(now), flags_);
 }
 
 void SimTagField::advance(hal::Instant now, std::vector<AirRead>& out) {
-  sample_body(seconds(now));
+  track_.look(seconds(now), body_->state().pose);
   if (!on_) return;
   while (true) {
     const double end_s = schedule_.dwell().end_s;
-    if (std::min(next_draw_s_, end_s) > now_s_) return;
-    if (next_draw_s_ <= end_s) {
+    const double next_s = std::min({next_draw_s_, next_look_s_, end_s});
+    if (next_s > track_.now_s()) return;
+    if (next_s == next_draw_s_) {
       draw(out);
-    } else {
+    } else if (next_s == end_s) {
       schedule_.advance();
       begin_dwell();
+    } else {
+      next_look_s_ = next_s + kLook_s;
+      if (look_around(next_s)) {
+        free_s_ = std::max(free_s_, next_s);
+        schedule_draw();
+      }
     }
   }
-}
-
-hal::Pose SimTagField::pose_at(double t_s) const {
-  if (t_s >= now_s_ || now_s_ <= previous_s_) return pose_;
-  const double share = std::max(t_s - previous_s_, 0.0) / (now_s_ - previous_s_);
-  const auto between = [share](double a, double b) { return a + share * (b - a); };
-  return {previous_pose_.position + share * (pose_.position - previous_pose_.position),
-          previous_pose_.yaw_rad + share * hal::angle_difference(pose_.yaw_rad, previous_pose_.yaw_rad),
-          between(previous_pose_.pitch_rad, pose_.pitch_rad),
-          between(previous_pose_.roll_rad, pose_.roll_rad)};
 }
 
 void SimTagField::begin_dwell() {
   ++statistics_.dwells;
   const double start_s = schedule_.dwell().start_s;
-  refresh_bounds_if_moved(pose_at(start_s).position);
-  if (flags_.needs_power_watch()) watch_power(start_s);
-  schedule_draw(start_s + air_.settle_s);
+  next_look_s_ = start_s + kLook_s;
+  free_s_ = start_s + air_.settle_s;
+  look_around(start_s);
+  if (flags_.needs_power_watch())
+    powered_.update(start_s, track_.at(start_s), max_reach_, link_, nearby_, settings_.ports, flags_);
+  if (ear().audible.total_per_s <= 0.0) ++statistics_.blind_dwells;
+  schedule_draw();
 }
 
-void SimTagField::schedule_draw(double from_s) {
-  const double total = candidates_.empty() ? 0.0 : candidates_.back().sum_per_s;
-  next_draw_s_ = total > 0.0 ? from_s + random_.exponential() / total : kNever;
+void SimTagField::schedule_draw() {
+  const double total = ear().audible.total_per_s;
+  next_draw_s_ = total > 0.0 ? free_s_ + random_.exponential() / total : kNever;
 }
 
 void SimTagField::draw(std::vector<AirRead>& out) {
   const double t_s = next_draw_s_;
   const Dwell& dwell = schedule_.dwell();
   ++statistics_.draws;
-  refresh_view(t_s);
-  const double pick = random_.uniform() * candidates_.back().sum_per_s;
-  const auto above = [](double value, const Candidate& c) { return value < c.sum_per_s; };
-  const Candidate chosen =
-      *std::min(std::upper_bound(candidates_.begin(), candidates_.end(), pick, above), candidates_.end() - 1);
+  const NearbyTags::Candidate chosen = nearby_.pick(ear().audible, random_.uniform());
   const double keep_below = random_.uniform() * chosen.bound_per_s;
-  double free_s = t_s;
+  free_s_ = t_s;
   if (flags_.answers(chosen.tag, settings_.session, settings_.target, t_s, dwell.id)) {
-    const TagLink link = link_.link(view_, chosen.tag);
+    if (t_s - ear().at_s >= kPoseAge_s) renew_view(t_s, track_.at(t_s));
+    const TagLink link = link_.link_above(ear().view, chosen.tag, keep_below);
     const double rate = link_.hazard(link);
     if (rate > chosen.bound_per_s) ++statistics_.bound_exceeded;
     if (keep_below < rate) {
@@ -131,12 +136,12 @@ void SimTagField::draw(std::vector<AirRead>& out) {
               ? dwell.start_s + (std::floor((t_s - dwell.start_s) / air_.round_s) + 1.0) * air_.round_s
               : t_s;
       flags_.singulate(chosen.tag, settings_.session, settings_.target, t_s, dwell.id, round_end_s);
+      if (settings_.session >= 2) powered_.singulated(chosen.tag);
       report(link, chosen.tag, t_s, out);
-      free_s += air_.singulation_s;
+      free_s_ += air_.singulation_s;
     }
   }
-  refresh_bounds_if_moved(pose_at(t_s).position);
-  schedule_draw(free_s);
+  schedule_draw();
 }
 
 void SimTagField::report(const TagLink& link, std::uint32_t tag, double t_s, std::vector<AirRead>& out) {
@@ -145,7 +150,7 @@ void SimTagField::report(const TagLink& link, std::uint32_t tag, double t_s, std
   if (heard_in_[tag] != dwell.id) schedule_.prolong(t_s);
   heard_in_[tag] = dwell.id;
   const RadioPort& port = settings_.ports[dwell.port_index];
-  const double rssi = link_.rssi_dbm(view_, link, tag) + air_.rssi_noise_db * random_.normal();
+  const double rssi = link_.rssi_dbm(ear().view, link, tag) + air_.rssi_noise_db * random_.normal();
   if (rssi < port.sensitivity_dbm) {
     ++statistics_.too_weak;
     return;
@@ -155,43 +160,50 @@ void SimTagField::report(const TagLink& link, std::uint32_t tag, double t_s, std
                  *epoch_ + hal::from_seconds(t_s)});
 }
 
-void SimTagField::refresh_view(double t_s) {
-  const Dwell& dwell = schedule_.dwell();
-  if (view_dwell_ == dwell.id && t_s - view_s_ < kPoseAge_s) return;
-  view_ = link_.view(pose_at(t_s), settings_.ports[dwell.port_index]);
-  view_s_ = t_s;
-  view_dwell_ = dwell.id;
+bool SimTagField::look_around(double t_s) {
+  const hal::Pose pose = track_.at(t_s);
+  const bool moved = !nearby_at_ || distance2(pose.position, *nearby_at_) >= kBoundMove_m * kBoundMove_m;
+  if (moved || t_s >= silent_until_s_) renew_nearby(t_s, pose.position);
+  Ear& ear = this->ear();
+  if (t_s - ear.at_s >= kPoseAge_s || !ear.known) renew_view(t_s, pose);
+  if (ear.audible_generation == nearby_.generation() &&
+      (!air_.skip_behind || turn_between(pose, ear.audible_body) < kTurnMove_rad))
+    return false;
+  ear.audible = air_.skip_behind ? nearby_.before(ear.view, kTurnSlack_rad) : nearby_.everything();
+  if (air_.skip_blind_antennas && !ear.view.fitted) ear.audible = {};
+  if (!air_.skip_blind_antennas && ear.audible.total_per_s <= 0.0) ear.audible = nearby_.everything();
+  ear.audible_body = pose;
+  ear.audible_generation = nearby_.generation();
+  return true;
 }
 
-void SimTagField::refresh_bounds_if_moved(hal::Vec3 position) {
-  if (bounds_at_ && norm(position - *bounds_at_) < kBoundMove_m) return;
-  bounds_at_ = position;
-  candidates_.clear();
-  double sum = 0.0;
-  for (std::uint32_t tag = 0; tag < world_->tags.size(); ++tag) {
-    const double bound = link_.hazard_bound(position, kBoundSlack_m, max_reach_, tag);
-    if (bound <= 0.0) continue;
-    sum += bound;
-    candidates_.push_back({tag, bound, sum});
-  }
+void SimTagField::renew_nearby(double t_s, hal::Vec3 position) {
+  nearby_at_ = position;
+  const double silence_s = std::min(kSilence_s, air_.s2_persistence_min_s);
+  const bool silences =
+      air_.skip_silent && settings_.session > 0 && settings_.target != '*' && silence_s > kLook_s;
+  const NearbyTags::Silence silence{.flags = &flags_,
+                                    .session = settings_.session,
+                                    .target = settings_.target,
+                                    .dwell = schedule_.dwell().id,
+                                    .now_s = t_s,
+                                    .until_s = t_s + silence_s};
+  nearby_.renew({position, kBoundSlack_m, max_reach_}, silences ? &silence : nullptr);
+  silent_until_s_ = nearby_.silent() > 0 ? t_s + silence_s : kNever;
+  ++statistics_.renewals;
+  statistics_.examined += nearby_.examined();
 }
 
-// Which of the counted tags get power from any port. While the body rests nothing changes.
-void SimTagField::watch_power(double t_s) {
-  if (power_watched_at_ && t_s - power_watched_s_ < kPowerWatch_s) return;
-  const hal::Pose pose = pose_at(t_s);
-  if (power_watched_at_ && norm(pose.position - power_watched_at_->position) < kPowerWatchMove_m &&
-      std::abs(hal::angle_difference(pose.yaw_rad, power_watched_at_->yaw_rad)) < kPowerWatchTurn_rad)
+void SimTagField::renew_view(double t_s, const hal::Pose& pose) {
+  Ear& ear = this->ear();
+  ear.at_s = t_s;
+  if (ear.known && distance2(pose.position, ear.body.position) <= air_.unchanged_m * air_.unchanged_m &&
+      turn_between(pose, ear.body) <= air_.unchanged_rad)
     return;
-  power_watched_at_ = pose;
-  power_watched_s_ = t_s;
-  port_views_.clear();
-  for (const RadioPort& port : settings_.ports) port_views_.push_back(link_.view(pose, port));
-  for (std::uint32_t tag = 0; tag < world_->tags.size(); ++tag) {
-    if (!flags_.holds(tag)) continue;
-    const auto reaches = [&](const AntennaView& view) { return std::isfinite(link_.link(view, tag).u); };
-    flags_.set_power(tag, std::any_of(port_views_.begin(), port_views_.end(), reaches), t_s);
-  }
+  ear.known = true;
+  ear.view = link_.view(pose, settings_.ports[schedule_.dwell().port_index]);
+  ear.body = pose;
+  ++statistics_.views;
 }
 
 }  // namespace forager::mocks

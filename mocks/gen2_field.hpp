@@ -7,10 +7,13 @@
 
 #include "hal/random.hpp"
 #include "mocks/body.hpp"
+#include "mocks/body_track.hpp"
 #include "mocks/gen2_field_dwell.hpp"
 #include "mocks/gen2_field_flags.hpp"
 #include "mocks/gen2_field_link.hpp"
+#include "mocks/gen2_field_nearby.hpp"
 #include "mocks/gen2_field_parameters.hpp"
+#include "mocks/gen2_field_power.hpp"
 #include "mocks/tag_field.hpp"
 #include "mocks/world.hpp"
 
@@ -23,20 +26,26 @@ struct FieldStatistics {
   std::uint64_t singulations = 0;
   std::uint64_t too_weak = 0;        // singulated, but below the port's sensitivity: not reported
   std::uint64_t bound_exceeded = 0;  // rates above the bound they were drawn under; 0 or the bound is wrong
+  std::uint64_t renewals = 0;        // looks around for tags in range
+  std::uint64_t examined = 0;        // tags whose distance was computed in them
+  std::uint64_t views = 0;           // antenna poses computed
+  std::uint64_t blind_dwells = 0;    // spent without a draw: no tag before the antenna
 };
 
 // The air between a reader on the vehicle and the tags of the world, at the level of inventory rounds. Each
 // tag is a Poisson process with the hazard rate of its link while the radio listens to the port and its flag
 // fits; a singulation takes its time, during which nobody else is heard.
 //
-// The process is drawn by thinning: candidates come at the rate of an upper bound that holds for any attitude
-// within some decimetres of the place it was computed for, one tag is picked in proportion to its bound, and
-// kept with probability true rate / bound. So the cost follows the replies, not tags times ports times ticks,
-// there is no tick, and with the body at rest the replies do not depend on how often advance() is called at
-// all. Between two calls the body is taken to move evenly; poses are refreshed every 5 ms.
+// The process is drawn by thinning: candidates come at the rate of an upper bound that holds within some
+// decimetres of the place it was computed for, one tag is picked in proportion to its bound, and kept with
+// probability true rate / bound. So the cost follows the replies, not tags times ports times ticks, there is
+// no tick, and with the body at rest the replies do not depend on how often advance() is called at all.
+// Between two calls the body is taken to move evenly; poses are refreshed every 5 ms. What is left out on the
+// way (tags out of range, behind, silent, unchanged geometry) has a switch each in AirParameters.
 //
 // Refinements of the protocol (slots, collisions, a fixed Q) are not modelled: q is ignored.
-// world (fixed) and body must outlive the field. Allocates at construction and in radio_on() only.
+// world (fixed) and body must outlive the field. Once it has been in the densest part of the world it
+// allocates in radio_on() only. Memory: about 90 bytes a tag.
 class SimTagField final : public TagField {
  public:
   // Parameters must have passed validate().
@@ -56,22 +65,27 @@ class SimTagField final : public TagField {
   [[nodiscard]] const FieldStatistics& statistics() const { return statistics_; }
 
  private:
-  struct Candidate {
-    std::uint32_t tag;
-    double bound_per_s;
-    double sum_per_s;  // of all bounds up to and with this one
+  // Where an antenna was when it was last looked at, and what it could hear from there.
+  struct Ear {
+    bool known = false;
+    AntennaView view;
+    hal::Pose body;
+    double at_s = 0.0;
+    Audible audible;
+    hal::Pose audible_body;
+    std::uint64_t audible_generation = 0;  // of nearby_; 0: none yet
   };
 
   [[nodiscard]] double seconds(hal::Instant now);
-  [[nodiscard]] hal::Pose pose_at(double t_s) const;
-  void sample_body(double now_s);
   void begin_dwell();
-  void schedule_draw(double from_s);
+  void schedule_draw();
   void draw(std::vector<AirRead>& out);
   void report(const TagLink& link, std::uint32_t tag, double t_s, std::vector<AirRead>& out);
-  void refresh_view(double t_s);
-  void refresh_bounds_if_moved(hal::Vec3 position);
-  void watch_power(double t_s);
+  [[nodiscard]] Ear& ear() { return ears_[schedule_.dwell().port_index]; }
+  // Brings everything up to the body's pose at t_s; true if what the antenna may hear has changed.
+  bool look_around(double t_s);
+  void renew_nearby(double t_s, hal::Vec3 position);
+  void renew_view(double t_s, const hal::Pose& pose);
 
   const World* world_;
   mutable std::string epc_text_;  // what epc_hex() gave last
@@ -86,22 +100,18 @@ class SimTagField final : public TagField {
   RadioSettings settings_;
   bool on_ = false;
   std::optional<hal::Instant> epoch_;
-  hal::Pose previous_pose_;
-  hal::Pose pose_;
-  double previous_s_ = 0.0;
-  double now_s_ = 0.0;
+  BodyTrack track_;
 
-  AntennaView view_;
-  double view_s_ = 0.0;
-  std::uint64_t view_dwell_ = 0;
-  std::vector<Candidate> candidates_;
-  std::optional<hal::Vec3> bounds_at_;
+  NearbyTags nearby_;
+  std::optional<hal::Vec3> nearby_at_;
+  double silent_until_s_ = 0.0;  // tags that nearby_ left out as silent are so until then
   double max_reach_ = 1.0;
+  std::vector<Ear> ears_;  // by port index
+  PoweredTags powered_;
+  double free_s_ = 0.0;  // the air is busy until then
   double next_draw_s_ = 0.0;
+  double next_look_s_ = 0.0;
   std::vector<std::uint64_t> heard_in_;  // by tag: the last dwell that heard it
-  std::vector<AntennaView> port_views_;
-  double power_watched_s_ = 0.0;
-  std::optional<hal::Pose> power_watched_at_;
 };
 
 }  // namespace forager::mocks

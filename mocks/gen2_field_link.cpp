@@ -11,9 +11,6 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNominalPower_dbm = 30.0;
-// A tag nearer than this share of its R0 is heard as often as there: 4.5 answers in T0. The logarithm has no
-// limit of its own, and the draw needs one.
-constexpr double kNearestU = 0.02;
 constexpr double kSpeedOfLight_m_s = 299792458.0;
 
 double amplitude_of(double db) { return std::pow(10.0, db / 20.0); }
@@ -47,16 +44,18 @@ bool crosses(const Box& box, hal::Vec3 from, hal::Vec3 to) {
 
 AirLink::AirLink(const World& world, std::vector<AntennaMounting> antennas, const AirParameters& air,
                  std::uint64_t seed)
-    : world_(&world),
-      antennas_(std::move(antennas)),
-      air_(air),
-      fade_(air.rician_k_db, air.fade_length_m, seed) {
+    : world_(&world), air_(air), fade_(air.rician_k_db, air.fade_length_m, seed), hazard_table_(air) {
   hal::Random random = hal::Random::stream(seed, 1);
+  spread_db_.reserve(world.tags.size());
+  r0_m_.reserve(world.tags.size());
   for (std::size_t i = 0; i < world.tags.size(); ++i) {
     spread_db_.push_back(air.spread_db * std::clamp(random.normal(), -3.0, 3.0));
     r0_m_.push_back(air.r0_m * amplitude_of(spread_db_.back()));
   }
-  for (const AntennaMounting& a : antennas_) longest_arm_m_ = std::max(longest_arm_m_, norm(a.position_body));
+  for (const AntennaMounting& a : antennas) {
+    longest_arm_m_ = std::max(longest_arm_m_, norm(a.position_body));
+    antennas_.push_back({a, axes_of({{}, a.bearing_rad, -a.tilt_rad, 0.0})});
+  }
 }
 
 AntennaView AirLink::view(const hal::Pose& body, const RadioPort& port) const {
@@ -64,17 +63,17 @@ AntennaView AirLink::view(const hal::Pose& body, const RadioPort& port) const {
   view.port = port.port;
   view.power_db = port.power_dbm - kNominalPower_dbm;
   view.reach = amplitude_of(view.power_db);
-  for (const AntennaMounting& a : antennas_) {
-    if (a.port != port.port) continue;
+  for (const Mounted& a : antennas_) {
+    if (a.mounting.port != port.port) continue;
     const Axes body_axes = axes_of(body);
     view.fitted = true;
-    view.position_world = body.position + body_axes.to_parent(a.position_body);
-    view.axes_world = compose(body_axes, axes_of({{}, a.bearing_rad, -a.tilt_rad, 0.0}));
+    view.position_world = body.position + body_axes.to_parent(a.mounting.position_body);
+    view.axes_world = compose(body_axes, a.axes_body);
   }
   return view;
 }
 
-TagLink AirLink::link(const AntennaView& antenna, std::uint32_t tag) const {
+TagLink AirLink::link_above(const AntennaView& antenna, std::uint32_t tag, double rate_per_s) const {
   TagLink link;
   link.u = kInf;
   if (!antenna.fitted) return link;
@@ -84,6 +83,11 @@ TagLink AirLink::link(const AntennaView& antenna, std::uint32_t tag) const {
   if (!(link.range_m <= air_.power_up_limit * r0_m * fade_.max_amplitude())) return link;
   link.pattern_power = air_.pattern.power(antenna.axes_world.from_parent(offset));
   if (link.pattern_power <= 0.0) return link;
+  if (rate_per_s > 0.0) {
+    const double r0_at_best_m = r0_m * fade_.max_amplitude();
+    const double u = normalised_range(link.range_m, r0_at_best_m, link.pattern_power, air_.pattern_exponent);
+    if (hazard_table_.bound(u) <= rate_per_s) return link;
+  }
   link.amplitude = fade_.amplitude(tag, antenna.port, antenna.position_world);
   if (air_.occlusion_db > 0.0)
     link.amplitude *= amplitude_of(-air_.occlusion_db *
@@ -100,10 +104,7 @@ double AirLink::hazard(const TagLink& link) const { return expected_answers(link
 double AirLink::hazard_bound(hal::Vec3 body, double slack_m, double max_reach, std::uint32_t tag) const {
   const hal::Vec3 offset = world_->tags.position(tag) - body;
   const double nearest_m = std::max(std::sqrt(Axes::dot(offset, offset)) - longest_arm_m_ - slack_m, 0.0);
-  const double u = nearest_m / (r0_m_[tag] * max_reach * fade_.max_amplitude());
-  if (u > air_.power_up_limit) return 0.0;
-  const double answers = expected_answers(std::max(u, kNearestU));
-  return answers < air_.hazard_cut ? 0.0 : answers / air_.t0_s;
+  return hazard_table_.bound(nearest_m / (r0_m_[tag] * max_reach * fade_.max_amplitude()));
 }
 
 double AirLink::rssi_dbm(const AntennaView& antenna, const TagLink& link, std::uint32_t tag) const {

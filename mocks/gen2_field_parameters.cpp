@@ -37,6 +37,8 @@ hal::Result<> validate(const AirParameters& air, const std::vector<AntennaMounti
       {"s2_persistence_min_s", air.s2_persistence_min_s, 0.0, 1e6},
       {"s2_persistence_max_s", air.s2_persistence_max_s, air.s2_persistence_min_s, 1e6},
       {"hazard_cut", air.hazard_cut, 0.0, 1.0},
+      {"unchanged_m", air.unchanged_m, 0.0, 0.1},
+      {"unchanged_rad", air.unchanged_rad, 0.0, 0.1},
   };
   const auto refuse = [](std::string detail) {
     return hal::fail(hal::ErrorCode::invalid_argument, "simulated air", "check parameters",

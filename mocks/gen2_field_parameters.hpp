@@ -63,6 +63,24 @@ struct AirParameters {
   // Tags expected to answer less often than this within T0 are not drawn at all: of N such tags fewer than
   // N * hazard_cut * (time / T0) answers are lost. 0 draws every tag.
   double hazard_cut = 1e-6;
+
+  // What is left out or computed again less often, each by itself; all are on unless their cost in accuracy
+  // is being measured.
+  //
+  // Tags in range are found through a grid. Off: by a look at every one. The same replies, byte for byte.
+  bool skip_by_grid = true;
+  // Tags in directions an antenna does not hear are not drawn. Their hazard is 0: no error.
+  bool skip_behind = true;
+  // Nothing is drawn for an antenna before which there is no tag in range. No error.
+  bool skip_blind_antennas = true;
+  // Tags that their session keeps silent for the next second are not drawn. No error: an answer of theirs
+  // would be refused.
+  bool skip_silent = true;
+  // While body and antenna moved by less than this and turned by less than that since the geometry was last
+  // computed, it stands. The replies are those of antennas displaced by no more; both errors vanish at rest.
+  // 0: computed anew every 5 ms.
+  double unchanged_m = 0.005;
+  double unchanged_rad = 0.005;
 };
 
 // Errors: invalid_argument naming the field, its value and what is allowed.
