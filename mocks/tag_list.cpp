@@ -55,6 +55,17 @@ void TagList::add(const Epc96& epc, hal::Vec3 position, bool wanted) {
   wanted_.push_back(wanted ? 1 : 0);
 }
 
+void append(TagList& tags, const TagList& more) {
+  const std::size_t before = tags.size();
+  const auto take = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  take(tags.x_, more.x_);
+  take(tags.y_, more.y_);
+  take(tags.z_, more.z_);
+  take(tags.epc_, more.epc_);
+  take(tags.wanted_, more.wanted_);
+  for (const auto& [tag, epc] : more.odd_) tags.odd_.emplace(before + tag, epc);
+}
+
 void TagList::append_epc_hex(std::size_t tag, std::string& out) const {
   if (const Epc96* const epc = epc96(tag))
     append_hex(out, *epc);

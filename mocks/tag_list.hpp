@@ -43,6 +43,8 @@ class TagList {
   // Any text is taken for an EPC. At most 2^32 - 2 tags.
   void push_back(const Tag& tag);
   void add(const Epc96& epc, hal::Vec3 position, bool wanted);
+  // All tags of another list.
+  friend void append(TagList& tags, const TagList& more);
 
   [[nodiscard]] View operator[](std::size_t tag) const { return {position(tag), wanted(tag)}; }
   [[nodiscard]] hal::Vec3 position(std::size_t tag) const { return {x_[tag], y_[tag], z_[tag]}; }
