@@ -6,6 +6,12 @@ elseif(FORAGER_HAVE_CRYPTO)
   forager_tests(hal/linux/http LINKS forager_hal_linux PkgConfig::CRYPTO)  # the test server hashes on its own
 endif()
 
+if(NOT FORAGER_HAVE_GPIOD)
+  forager_tests(hal/linux/absent_gpiod LINKS forager_hal_linux)
+elseif(GPIOD_VERSION VERSION_LESS 2)
+  forager_tests(hal/linux/gpio LINKS forager_hal_linux ${CMAKE_DL_LIBS})  # its fake kernel speaks the v1 interface
+endif()
+
 find_program(FORAGER_PYTHON NAMES python3 REQUIRED)
 add_test(NAME include_rule
          COMMAND ${FORAGER_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/include_rule.py ${PROJECT_SOURCE_DIR})
