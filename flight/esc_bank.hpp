@@ -28,12 +28,13 @@ struct EscLine {
 };
 
 struct EscBankConfig {
-  EscPulses pulses;
-  EscArmingTimes arming;
-  EscCalibrationTimes calibration;
+  EscPulses pulses{};
+  EscArmingTimes arming{};
+  EscCalibrationTimes calibration{};
   double rise_per_s = 0.5;  // of the throttle: full after two seconds
   double fall_per_s = 2.0;  // when told less; a stop is at once
-  double most_throttle = 1.0;
+  // 1380 us: below the 1460 us that an ESC which gets its power too late would take for a calibration.
+  double most_throttle = 0.4;
   // A command older than this is none. Shorter than the 131 ms after which an ESC stops by itself, so that
   // ours is always the first stop.
   hal::Duration command_max_age = std::chrono::milliseconds(100);
