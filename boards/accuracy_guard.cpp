@@ -24,6 +24,10 @@ hal::DepthCameraModel camera() { return {kColumns, kRows, 343.0, 442.0, 320.0, 2
 double left_of(int column) { return -(column + 0.5 - camera().cx_px) / camera().fx_px; }
 double above(int row) { return -(row + 0.5 - camera().cy_px) / camera().fy_px; }
 
+std::size_t pixel_at(int row, int column) {
+  return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
+}
+
 struct Frame {
   std::vector<float> metres;
   std::vector<std::uint16_t> millimetres;
@@ -68,7 +72,7 @@ double exact_range_m(const Frame& frame, bool as_metres) {
   for (int r = 0; r < kRows; ++r) {
     const Wide up = pitch.cos * Wide(-(r + 0.5 - camera().cy_px)) / Wide(camera().fy_px) - pitch.sin;
     for (int c = 0; c < kColumns; ++c) {
-      const auto pixel = static_cast<std::size_t>(r * kColumns + c);
+      const std::size_t pixel = pixel_at(r, c);
       const double depth = metres(frame, pixel, as_metres);
       if (!(depth >= camera().min_m)) continue;
       const Wide wide = as_metres ? Wide(depth) : Wide(frame.millimetres[pixel]) / Wide(1000.0);
@@ -93,7 +97,7 @@ double projected_range_m(const Frame& frame) {
   std::vector<double> inside;
   for (int r = 0; r < kRows; ++r)
     for (int c = 0; c < kColumns; ++c) {
-      const T depth = static_cast<T>(frame.metres[static_cast<std::size_t>(r * kColumns + c)]);
+      const T depth = static_cast<T>(frame.metres[pixel_at(r, c)]);
       if (!(depth >= static_cast<T>(model.min_m))) continue;
       const T y = -depth * (static_cast<T>(c) + T(0.5) - static_cast<T>(model.cx_px)) / focal_x;
       const T z = -depth * (static_cast<T>(r) + T(0.5) - static_cast<T>(model.cy_px)) / focal_y;

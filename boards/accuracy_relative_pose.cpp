@@ -15,7 +15,6 @@
 namespace forager::boards {
 namespace {
 
-using flight::MapPoint;
 using flight::MutualSighting;
 using Sightings = std::vector<MutualSighting>;
 

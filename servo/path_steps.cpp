@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <limits>
+#include <tuple>
 
 namespace forager::servo {
 namespace {
@@ -46,10 +46,11 @@ Line even_line(std::span<const PathPose> path, double tolerance_m) {
       line.tolerance_m = tolerance_m - thinning_m;
       continue;
     }
-    const double pieces = std::max(1.0, std::ceil(gap_m / kSpacingM - 0.5));
-    for (double k = 1.0; k < pieces; ++k)
-      line.points.push_back(
-          {from.x + (to.x - from.x) * k / pieces, from.y + (to.y - from.y) * k / pieces, i});
+    const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil(gap_m / kSpacingM - 0.5)));
+    for (std::size_t k = 1; k < pieces; ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(pieces);
+      line.points.push_back({from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part, i});
+    }
     line.points.push_back(to);
   }
   return line;
@@ -81,7 +82,9 @@ struct Cost {
   std::size_t close = 0;
   std::size_t steps = 0;
   double squares_m2 = 0.0;  // smallest when the lengths are even
-  auto operator<=>(const Cost&) const = default;
+  friend bool operator<(const Cost& a, const Cost& b) {
+    return std::tie(a.close, a.steps, a.squares_m2) < std::tie(b.close, b.steps, b.squares_m2);
+  }
 };
 
 struct Best {

@@ -42,10 +42,11 @@ TEST(GeometryRows, ThePrintedDriveIsMeasuredFromTheWrongPoint) {
   const PublishedTurn printed = published_turn({1.0, 0.5});
   EXPECT_NEAR(printed.turn_rad, hal::kPi / 6, 1e-8);
   EXPECT_NEAR(printed.drive_m / std::sqrt(0.75), 1.29, 0.005);
-  const PublishedTurn mended = published_turn({1.0, 0.5}, Reading::mended);
-  EXPECT_NEAR(mended.drive_m, std::sqrt(0.75), 1e-8);
-  // One metre to the side of the wheel y and y^2 are the same: the misprint of 6.7 does not show.
-  EXPECT_EQ(published_turn({1.0, 1.5}).turn_rad, published_turn({1.0, 1.5}, Reading::mended).turn_rad);
+  const PublishedTurn mended = published_turn({2.0, 1.0}, Reading::mended);
+  EXPECT_NEAR(hal::rad_to_deg(mended.turn_rad), 28.0725, 5e-5);
+  EXPECT_NEAR(mended.drive_m, 2.0, 1e-12);
+  // Abreast of the wheel 6.5 divides by 0; almost straight ahead 6.8 as printed has no real root.
+  EXPECT_TRUE(std::isnan(published_turn({1.0, 0.5}, Reading::mended).turn_rad));
   EXPECT_TRUE(std::isnan(published_turn({2.0, 0.1}).turn_rad));
 }
 
