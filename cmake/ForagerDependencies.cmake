@@ -1,6 +1,6 @@
 # Always needed (all packaged in Debian 12): expected, fmt, pugixml, toml++, CLI11, nlohmann-json.
 # Optional, per feature: libcurl (real reader over HTTP), SQLite (durable inventory), libcrypto (MAVLink signing),
-# Highway (vector loops of the simulated air), libgpiod 1 or 2 (GPIO lines).
+# Highway (vector loops of the simulated air), libgpiod 1 or 2 (GPIO lines), libmodbus (actuators).
 find_package(tl-expected CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(pugixml CONFIG REQUIRED)
@@ -34,3 +34,4 @@ forager_feature(CRYPTO libcrypto)
 forager_feature(NANOFLANN nanoflann)
 forager_feature(HIGHWAY libhwy)
 forager_feature(GPIOD libgpiod)
+forager_feature(MODBUS libmodbus)

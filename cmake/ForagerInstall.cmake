@@ -34,6 +34,7 @@ set(vendor_PkgConfig::SQLITE "pkg_check_modules(SQLITE REQUIRED IMPORTED_TARGET 
 set(vendor_PkgConfig::CRYPTO "pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET libcrypto)" libcrypto)
 set(vendor_PkgConfig::HIGHWAY "pkg_check_modules(HIGHWAY REQUIRED IMPORTED_TARGET libhwy)" libhwy)
 set(vendor_PkgConfig::GPIOD "pkg_check_modules(GPIOD REQUIRED IMPORTED_TARGET libgpiod)" libgpiod)
+set(vendor_PkgConfig::MODBUS "pkg_check_modules(MODBUS REQUIRED IMPORTED_TARGET libmodbus)" libmodbus)
 
 set(vendors "")
 set(archives "")

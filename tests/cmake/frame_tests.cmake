@@ -11,6 +11,11 @@ if(NOT FORAGER_HAVE_GPIOD)
 elseif(GPIOD_VERSION VERSION_LESS 2)
   forager_tests(hal/linux/gpio LINKS forager_hal_linux ${CMAKE_DL_LIBS})  # its fake kernel speaks the v1 interface
 endif()
+if(FORAGER_HAVE_MODBUS)
+  forager_tests(hal/linux/modbus LINKS forager_hal_linux forager_mocks)
+else()
+  forager_tests(hal/linux/absent_modbus LINKS forager_hal_linux)
+endif()
 
 find_program(FORAGER_PYTHON NAMES python3 REQUIRED)
 add_test(NAME include_rule

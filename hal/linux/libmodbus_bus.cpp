@@ -1,0 +1,129 @@
+// libmodbus 3.1. Twin: absent_libmodbus_bus.cpp.
+#include <fmt/format.h>
+#include <modbus/modbus.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "hal/linux/kernel.hpp"
+#include "hal/linux/modbus_bus.hpp"
+
+namespace forager::hal {
+namespace {
+
+struct FreeContext {
+  void operator()(modbus_t* context) const {
+    modbus_close(context);
+    modbus_free(context);
+  }
+};
+using Context = std::unique_ptr<modbus_t, FreeContext>;
+
+class LibmodbusBus final : public Modbus {
+ public:
+  LibmodbusBus(Context context, std::string name) : context_(std::move(context)), name_(std::move(name)) {}
+
+ private:
+  Result<> do_read(Table table, std::uint8_t unit, std::uint16_t address,
+                   std::span<std::uint16_t> into) override {
+    FORAGER_TRY(ready(unit));
+    const auto read = table == Table::holding ? modbus_read_registers : modbus_read_input_registers;
+    return judge(read(context_.get(), address, static_cast<int>(into.size()), into.data()),
+                 fmt::format("read registers {} to {} of unit {}", address, address + into.size() - 1, unit));
+  }
+  Result<> do_write(std::uint8_t unit, std::uint16_t address,
+                    std::span<const std::uint16_t> values) override {
+    FORAGER_TRY(ready(unit));
+    const int answer =
+        values.size() == 1
+            ? modbus_write_register(context_.get(), address, values[0])
+            : modbus_write_registers(context_.get(), address, static_cast<int>(values.size()), values.data());
+    return judge(answer, fmt::format("write registers {} to {} of unit {}", address,
+                                     address + values.size() - 1, unit));
+  }
+  Result<> do_write_coil(std::uint8_t unit, std::uint16_t address, bool on) override {
+    FORAGER_TRY(ready(unit));
+    return judge(modbus_write_bit(context_.get(), address, on ? 1 : 0),
+                 fmt::format("write coil {} of unit {}", address, unit));
+  }
+  [[nodiscard]] std::string_view do_name() const override { return name_; }
+
+  Result<> ready(std::uint8_t unit);
+  Result<> judge(int answer, std::string operation);
+
+  Context context_;
+  std::string name_;
+  bool connected_ = false;
+};
+
+Result<> LibmodbusBus::ready(std::uint8_t unit) {
+  modbus_set_slave(context_.get(), unit);
+  if (connected_) return {};
+  if (modbus_connect(context_.get()) == 0) {
+    connected_ = true;
+    return {};
+  }
+  const int error = errno;
+  const ErrorCode code = error == ECONNREFUSED ? ErrorCode::refused : code_of_device_errno(error);
+  return fail(code, name_, "connect", std::string(to_string(code)),
+              code == ErrorCode::permission ? "Join the group dialout, and log in again"
+                                            : "Check the port's name, the cable and the device's power",
+              error);
+}
+
+Result<> LibmodbusBus::judge(int answer, std::string operation) {
+  if (answer >= 0) return {};
+  const int error = errno;
+  if (error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX)
+    return modbus_exception(name_, operation, static_cast<std::uint8_t>(error - MODBUS_ENOBASE));
+  modbus_flush(context_.get());  // what is left of a late or broken answer must not be taken for the next one
+  const auto failed = [&](ErrorCode code, std::string detail, std::string mend) {
+    return fail(code, name_, std::move(operation), std::move(detail), std::move(mend));
+  };
+  switch (error) {
+    case ETIMEDOUT:
+      return failed(ErrorCode::timeout, "no answer",
+                    "Check the unit's number, baud rate, power and wires A and B");
+    case EMBBADCRC:
+      return failed(ErrorCode::protocol, "the answer's CRC is wrong",
+                    "Check shielding, termination and parity");
+    case EMBBADSLAVE:
+      return failed(ErrorCode::protocol, "another unit answered", "Two devices may have the same number");
+    case EMBBADDATA:
+    case EMBBADEXC:
+    case EMBMDATA:
+    case EMBUNKEXC:
+      return failed(ErrorCode::protocol, "the answer does not fit the question", "");
+    default:
+      break;
+  }
+  modbus_close(context_.get());
+  connected_ = false;
+  return fail(ErrorCode::disconnected, name_, std::move(operation), "the line is gone", "Check the cable",
+              error);
+}
+
+Result<std::unique_ptr<Modbus>> make(modbus_t* raw, std::string name, Duration timeout) {
+  Context context(raw);
+  if (!context || timeout <= Duration::zero())
+    return fail(ErrorCode::invalid_argument, std::move(name), "open", "settings that no line can have");
+  const auto us = static_cast<std::uint32_t>(
+      std::min<std::int64_t>(timeout / std::chrono::microseconds(1), 3'600'000'000));
+  modbus_set_response_timeout(context.get(), us / 1'000'000, us % 1'000'000);
+  modbus_set_byte_timeout(context.get(), us / 1'000'000, us % 1'000'000);
+  return std::make_unique<LibmodbusBus>(std::move(context), std::move(name));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Modbus>> open_modbus_rtu(const ModbusRtuConfig& config) {
+  return make(modbus_new_rtu(config.device.c_str(), config.baud, config.parity, 8, config.stop_bits),
+              "modbus " + config.device, config.timeout);
+}
+
+Result<std::unique_ptr<Modbus>> open_modbus_tcp(const ModbusTcpConfig& config) {
+  return make(modbus_new_tcp(config.host.c_str(), config.port),
+              fmt::format("modbus {}:{}", config.host, config.port), config.timeout);
+}
+
+}  // namespace forager::hal

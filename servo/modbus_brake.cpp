@@ -1,0 +1,72 @@
+#include "servo/modbus_brake.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace forager::servo {
+namespace {
+
+constexpr hal::Duration kLongestStep = std::chrono::milliseconds(100);  // as Servo's
+
+}  // namespace
+
+hal::Result<ModbusBrake> ModbusBrake::create(hal::Modbus& bus, const ModbusBrakeConfig& config) {
+  if (config.open_value == config.locked_value || !(config.slew_per_s > 0.0) ||
+      !std::isfinite(config.slew_per_s))
+    return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + std::string(bus.name()), "create",
+                     "open and locked are the same, or the slew limit is not a positive number");
+  return ModbusBrake(bus, config);
+}
+
+ModbusBrake::ModbusBrake(hal::Modbus& bus, const ModbusBrakeConfig& config)
+    : bus_(&bus), config_(config), name_(fmt::format("{} unit {}", bus.name(), config.unit)) {}
+
+hal::Result<> ModbusBrake::do_move(double fraction, hal::Instant now) {
+  if (std::isnan(fraction))
+    return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + name_, "move",
+                     "not a number was commanded");
+  const hal::Duration passed =
+      last_ ? std::clamp(now - *last_, hal::Duration::zero(), kLongestStep) : hal::Duration::zero();
+  last_ = now;
+  const double step = config_.slew_per_s * hal::to_seconds(passed);
+  FORAGER_TRY(send(std::clamp(std::clamp(fraction, 0.0, 1.0), place_ - step, place_ + step)));
+  return measure(now);
+}
+
+hal::Result<> ModbusBrake::send(double place) {
+  if (config_.enable_coil && !enabled_) {
+    FORAGER_TRY(bus_->write_coil(config_.unit, *config_.enable_coil, true));
+    enabled_ = true;
+  }
+  const double travel = static_cast<double>(config_.locked_value) - static_cast<double>(config_.open_value);
+  const std::array target{static_cast<std::uint16_t>(std::lround(config_.open_value + place * travel))};
+  if (sent_ != target[0]) {
+    sent_.reset();
+    FORAGER_TRY(bus_->write_holding(config_.unit, config_.target_register, target));
+    sent_ = target[0];
+  }
+  place_ = place;
+  return {};
+}
+
+hal::Result<> ModbusBrake::measure(hal::Instant now) {
+  if (!config_.measured_register || (next_poll_ && now < *next_poll_)) return {};
+  next_poll_ = now + config_.poll_interval;
+  measured_.reset();
+  std::array<std::uint16_t, 1> raw{};
+  FORAGER_TRY(bus_->read_input(config_.unit, *config_.measured_register, raw));
+  const double travel = static_cast<double>(config_.locked_value) - static_cast<double>(config_.open_value);
+  measured_ = (static_cast<double>(raw[0]) - static_cast<double>(config_.open_value)) / travel;
+  return {};
+}
+
+void ModbusBrake::halt() noexcept {
+  sent_.reset();
+  enabled_ = false;
+  static_cast<void>(send(1.0));
+}
+
+}  // namespace forager::servo

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hal/modbus.hpp"
+#include "servo/brake_actuator.hpp"
+
+namespace forager::servo {
+
+// Where a linear actuator keeps its position, as its manual says; all holding registers but the measured one.
+struct ModbusBrakeConfig {
+  std::uint8_t unit = 1;
+  std::uint16_t target_register = 0;
+  std::uint16_t open_value = 0;  // of the target register
+  std::uint16_t locked_value = 1000;
+  std::optional<std::uint16_t> measured_register{};  // an input register in the same units; none: no sensor
+  std::optional<std::uint16_t> enable_coil{};        // switched on before the first target
+  double slew_per_s = 4.0;                           // travels per second
+  // The bus is slow: the measured position is read no more often than this.
+  hal::Duration poll_interval = std::chrono::milliseconds(100);
+};
+
+// A linear actuator on Modbus that presses a brake. A target is written when it changes, and again after a
+// failure. Each move() costs at most one write and one read on the bus. After a crash the actuator stays
+// where it is: choose one whose own time-out locks it.
+class ModbusBrake final : public BrakeActuator {
+ public:
+  // Borrows the bus. Errors: invalid_argument (open and locked the same, slew not positive).
+  [[nodiscard]] static hal::Result<ModbusBrake> create(hal::Modbus& bus, const ModbusBrakeConfig& config);
+  void halt() noexcept override;
+
+ private:
+  ModbusBrake(hal::Modbus& bus, const ModbusBrakeConfig& config);
+  hal::Result<> do_move(double fraction, hal::Instant now) override;
+  [[nodiscard]] double do_commanded() const override { return place_; }
+  [[nodiscard]] std::optional<double> do_measured() const override { return measured_; }
+  [[nodiscard]] std::string_view do_name() const override { return name_; }
+  hal::Result<> send(double place);
+  hal::Result<> measure(hal::Instant now);
+
+  hal::Modbus* bus_;
+  ModbusBrakeConfig config_;
+  std::string name_;
+  double place_ = 1.0;
+  std::optional<std::uint16_t> sent_;
+  std::optional<double> measured_;
+  std::optional<hal::Instant> last_;
+  std::optional<hal::Instant> next_poll_;
+  bool enabled_ = false;
+};
+
+}  // namespace forager::servo
