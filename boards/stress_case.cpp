@@ -9,6 +9,8 @@ std::vector<StressCase> stress_cases() {
   constexpr Topic kTopics[] = {
       stress_detection,
       stress_geometry,
+      stress_numbers,
+      stress_wire,
   };
   std::vector<StressCase> cases;
   for (const Topic topic : kTopics) {

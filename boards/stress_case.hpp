@@ -38,5 +38,7 @@ class Worst {
 
 [[nodiscard]] std::vector<StressCase> stress_detection();
 [[nodiscard]] std::vector<StressCase> stress_geometry();
+[[nodiscard]] std::vector<StressCase> stress_numbers();
+[[nodiscard]] std::vector<StressCase> stress_wire();
 
 }  // namespace forager::boards

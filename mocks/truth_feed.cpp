@@ -14,6 +14,7 @@ constexpr hal::Duration kReopen = std::chrono::seconds(1);
 constexpr hal::Duration kPatience = std::chrono::seconds(2);  // with a teller that says nothing of use
 constexpr unsigned kArmed = 1;
 constexpr unsigned kOnGround = 2;
+constexpr double kUpright = 1.0 - 5e-7;  // sine of a pitch within 1e-3 rad of 90 degrees
 
 struct Quaternion {
   double w, x, y, z;
@@ -81,9 +82,16 @@ std::optional<BodyState> decode_truth(const MavlinkPayload& p) {
   q = {q.w / length, q.x / length, q.y / length, q.z / length};
   BodyState body;
   body.pose.position = flip(at);
-  body.pose.yaw_rad = -std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
-  body.pose.pitch_rad = -std::asin(std::clamp(2.0 * (q.w * q.y - q.z * q.x), -1.0, 1.0));
-  body.pose.roll_rad = std::atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
+  const double sine = std::clamp(2.0 * (q.w * q.y - q.z * q.x), -1.0, 1.0);
+  body.pose.pitch_rad = -std::asin(sine);
+  if (std::abs(sine) > kUpright) {
+    // Straight up or down only the sum or difference of yaw and roll is left of floats.
+    body.pose.yaw_rad = 2.0 * std::copysign(1.0, sine) * std::atan2(q.x, q.w);
+    body.pose.roll_rad = 0.0;
+  } else {
+    body.pose.yaw_rad = -std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
+    body.pose.roll_rad = std::atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
+  }
   body.pose.yaw_rad = hal::wrap_pi(body.pose.yaw_rad);
   body.velocity_world_m_s = flip(rotate(q, v));
   body.yaw_rate_rad_s = -rate;

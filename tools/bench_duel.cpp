@@ -24,6 +24,11 @@ std::uint64_t calls_for(const std::function<void()>& work, Seconds shortest) {
 
 }  // namespace
 
+TimedWork::TimedWork(const std::function<void()>& work, Seconds shortest)
+    : work_(&work), calls_(calls_for(work, shortest)) {}
+
+double TimedWork::once_s() const { return time_of(*work_, calls_).count() / static_cast<double>(calls_); }
+
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -36,14 +41,13 @@ hal::Result<BenchRow> measure(const Duel& duel, const DuelOptions& options) {
     return hal::fail(hal::ErrorCode::protocol, "bench", duel.name,
                      "the two ways do not come to the same result",
                      "The figures would mean nothing; run the tests.");
-  const std::uint64_t our_calls = calls_for(duel.ours, options.shortest);
-  const std::uint64_t other_calls = calls_for(duel.other, options.shortest);
+  const TimedWork our_work(duel.ours, options.shortest);
+  const TimedWork other_work(duel.other, options.shortest);
   std::vector<double> ours;
   std::vector<double> others;
   for (int i = 0; i < options.repeats; ++i) {
-    ours.push_back(duel.items * static_cast<double>(our_calls) / time_of(duel.ours, our_calls).count());
-    others.push_back(duel.items * static_cast<double>(other_calls) /
-                     time_of(duel.other, other_calls).count());
+    ours.push_back(duel.items / our_work.once_s());
+    others.push_back(duel.items / other_work.once_s());
   }
   return BenchRow{duel.name, median_of(std::move(ours)), duel.unit, duel.peer, median_of(std::move(others))};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -35,6 +36,16 @@ struct DuelOptions {
 
 // Middle of the values; the mean of the middle two. Not empty.
 [[nodiscard]] double median_of(std::vector<double> values);
+
+// Seconds one call takes: so many calls at once that they last `shortest`, which warms the caches on the way.
+struct TimedWork {
+  TimedWork(const std::function<void()>& work, std::chrono::duration<double> shortest);
+  [[nodiscard]] double once_s() const;
+
+ private:
+  const std::function<void()>* work_;
+  std::uint64_t calls_ = 1;
+};
 
 // Medians of both, measured turn by turn so that whatever else the machine does meets both alike. Errors:
 // protocol, they do not agree.

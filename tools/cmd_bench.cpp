@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "boards/scene.hpp"
+#include "boards/speed_contest.hpp"
 #include "tools/bench_duel.hpp"
 #include "tools/bench_mission.hpp"
 #include "tools/bench_row.hpp"
@@ -23,6 +24,9 @@ std::vector<Duel> hot_paths() {
   duels.push_back(guard_duel(80, 60));
   duels.push_back(guard_duel(640, 480));
   duels.push_back(new_tags_duel());
+  for (boards::SpeedContest& contest : boards::speed_contests())
+    duels.push_back({contest.name, contest.unit, contest.peer, contest.items, std::move(contest.ours),
+                     std::move(contest.other), std::move(contest.agree)});
   return duels;
 }
 
@@ -34,6 +38,29 @@ int print(const std::vector<BenchRow>& rows, bool json) {
     text = bench_table(rows);
   if (const auto written = write_output("-", text); !written) return complain(written.error());
   return kExitDone;
+}
+
+void add_accuracy_command(CLI::App& bench, int& exit_code) {
+  auto command = std::make_shared<AccuracyCommand>();
+  CLI::App* accuracy = bench.add_subcommand(
+      "accuracy", "What each way to compute something costs, and how far it is from the exact answer");
+  accuracy->add_option("--seed", command->seed, "Of the random samples")
+      ->capture_default_str()
+      ->check(WholeNumber());
+  accuracy->add_option("--repeat", command->repeats, "Measurements of each time, of which the fastest counts")
+      ->capture_default_str()
+      ->check(WholeNumber(1000))
+      ->check(CLI::Range(1, 1000));
+  accuracy->add_option("--effort", command->effort, "Share of the samples to take, above 0 to 100")
+      ->capture_default_str()
+      ->check(NumberBetween(1e-3, 100.0));
+  accuracy->add_option("--csv", command->csv, "Write the rows as a table for other programs, '-': to stdout")
+      ->type_name("FILE");
+  accuracy->add_option("--html", command->html, "Write a page with plots, '-': to stdout")->type_name("FILE");
+  accuracy->add_flag("--json", command->json,
+                     "JSON lines: name, variant, time_ns, max_abs_error, max_rel_error, reference, asked, "
+                     "failures, pareto");
+  accuracy->callback([command, &exit_code] { exit_code = run_bench_accuracy(*command); });
 }
 
 }  // namespace
@@ -71,6 +98,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   speed->add_flag("--json", command->json,
                   "JSON lines: name, ours, unit, peer, peer_value, ratio = ours / peer_value");
   speed->callback([command, &exit_code] { exit_code = run_bench_speed(*command); });
+  add_accuracy_command(*bench, exit_code);
 }
 
 }  // namespace forager::tools

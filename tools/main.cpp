@@ -13,6 +13,7 @@
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
+#include "tools/cmd_stress.hpp"
 
 namespace {
 
@@ -40,6 +41,7 @@ int run_command(int argc, char** argv) {
   add_report_command(app, exit_code);
   add_emulate_command(app, exit_code);
   add_bench_command(app, exit_code);
+  add_stress_command(app, exit_code);
   add_reproduce_command(app, exit_code);
   try {
     app.parse(argc, argv);
