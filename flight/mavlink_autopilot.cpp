@@ -90,6 +90,7 @@ MavlinkAutopilot::MavlinkAutopilot(hal::ByteStream& stream, hal::Journal& journa
       streams_(config),
       setpoint_(config.setpoint_interval),
       attitude_(config.attitude_interval),
+      servos_(config),
       deadman_(config.deadman),
       now_(now) {}
 
@@ -99,6 +100,7 @@ void MavlinkAutopilot::update(hal::Instant now) {
   link_.receive(now, [&](const mavlink::Frame& frame) { hear(frame, now); });
   if (telemetry_.update(now)) {
     streams_.restart();  // it may have rebooted
+    servos_.forget();
     origin_known_ = false;
     origin_tries_ = 0;
     next_origin_.reset();
@@ -125,7 +127,10 @@ void MavlinkAutopilot::hear(const mavlink::Frame& frame, hal::Instant now) {
   switch (frame.id) {
     case mavlink::CommandAck::kId: {
       const auto ack = mavlink::decode<mavlink::CommandAck>(frame);
-      if (is_for_us(ack.target_system, ack.target_component)) request_.take(ack, now);
+      if (is_for_us(ack.target_system, ack.target_component)) {
+        request_.take(ack, now);
+        servos_.take(ack);
+      }
       break;
     }
     case mavlink::Timesync::kId:
@@ -179,6 +184,8 @@ void MavlinkAutopilot::send_command(mavlink::CommandLong command, hal::Instant n
 void MavlinkAutopilot::send_requests(hal::Instant now) {
   const mavlink::CommandLong* const command = request_.due(now);
   if (command != nullptr && telemetry_.has_target()) send_command(*command, now);
+  servos_.set_link(link_.is_open() && state().link_up);
+  if (const auto servo = servos_.due(now)) send_command(*servo, now);
 }
 
 void MavlinkAutopilot::send_streams_and_origin(hal::Instant now) {

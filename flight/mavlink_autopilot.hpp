@@ -13,6 +13,7 @@
 #include "flight/mavlink_config.hpp"
 #include "flight/mavlink_link.hpp"
 #include "flight/mavlink_request.hpp"
+#include "flight/mavlink_servos.hpp"
 #include "flight/mavlink_setpoint.hpp"
 #include "flight/mavlink_streams.hpp"
 #include "flight/mavlink_telemetry.hpp"
@@ -75,6 +76,8 @@ class MavlinkAutopilot final : public DriveAutopilot {
   void send_vision(const hal::PoseSample& sample) override;
   void halt() noexcept override;
 
+  // Outputs the autopilot leaves to us. Commands go out in update(), while the link is up.
+  [[nodiscard]] MavlinkServos& servos() { return servos_; }
   [[nodiscard]] const MavlinkLink& link() const { return link_; }
   [[nodiscard]] Deadman::State deadman_state() const { return deadman_.state(); }
 
@@ -106,6 +109,7 @@ class MavlinkAutopilot final : public DriveAutopilot {
   MavlinkStreams streams_;
   MavlinkSetpoint setpoint_;
   MavlinkAttitude attitude_;
+  MavlinkServos servos_;
   bool rolls_ = false;  // the newest setpoint was an attitude: it stands on its wheels
   bool stop_heard_ = false;
   std::optional<hal::Instant> yaw_rate_taken_;

@@ -94,6 +94,7 @@ inline constexpr std::uint16_t kNavTakeoff = 22;
 inline constexpr std::uint16_t kConditionYaw = 115;
 inline constexpr std::uint16_t kDoSetMode = 176;
 inline constexpr std::uint16_t kDoSetHome = 179;
+inline constexpr std::uint16_t kDoSetServo = 183;
 inline constexpr std::uint16_t kDoMotorTest = 209;
 inline constexpr std::uint16_t kRebootShutdown = 246;
 inline constexpr std::uint16_t kArmDisarm = 400;
