@@ -4,6 +4,7 @@
 #include <string>
 
 #include "boards/config_node.hpp"
+#include "boards/esc_board.hpp"
 #include "hal/error.hpp"
 #include "hal/time.hpp"
 
@@ -40,6 +41,8 @@ struct Board {
 
   Endpoint autopilot{"127.0.0.1", 14550};
   Endpoint truth{"127.0.0.1", 14571};  // where the emulated autopilot's truth feed is received
+
+  EscBoard esc;  // lines of the bench; a mission never uses them
 };
 
 // The board with everything in process.

@@ -10,6 +10,7 @@
 #include "tools/cli_style.hpp"
 #include "tools/cmd_bench.hpp"
 #include "tools/cmd_emulate.hpp"
+#include "tools/cmd_esc.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
@@ -40,6 +41,7 @@ int run_command(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_report_command(app, exit_code);
   add_emulate_command(app, exit_code);
+  add_esc_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
   add_reproduce_command(app, exit_code);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "boards/config_reader.hpp"
+#include "flight/esc_bank.hpp"
+#include "hal/time.hpp"
+
+namespace forager::boards {
+
+enum class EscOutput : std::uint8_t {
+  emulated,  // four SimonK ESCs and their motors in this process
+  sysfs,     // a PWM chip of the kernel
+};
+
+struct EscMotor {
+  std::string name;           // "front-left"
+  std::uint32_t channel = 0;  // of the chip
+};
+
+// [esc] of a board file: which lines the ESCs listen to, and what their pulses mean.
+struct EscBoard {
+  bool named = false;  // the file has the table
+  EscOutput output = EscOutput::emulated;
+  std::string chip = "pwmchip0";
+  hal::Duration period = std::chrono::milliseconds(20);
+  std::vector<EscMotor> motors{{"front-left", 0}, {"front-right", 1}, {"rear-left", 2}, {"rear-right", 3}};
+  flight::EscBankConfig bank;
+};
+
+// Reads the table; mistakes become the reader's issue.
+[[nodiscard]] EscBoard read_esc_board(ConfigReader table);
+
+}  // namespace forager::boards

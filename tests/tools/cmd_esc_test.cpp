@@ -1,0 +1,181 @@
+// `forager esc` from outside, on emulated ESCs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/tools/program.hpp"
+#include "tests/tools/scratch_folder.hpp"
+
+namespace forager::tools {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kSentence = "the propellers are off";
+
+std::vector<nlohmann::json> lines_of(const std::string& out) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream in(out);
+  for (std::string line; std::getline(in, line);) lines.push_back(nlohmann::json::parse(line));
+  return lines;
+}
+
+void expect_refusal(const std::vector<std::string>& arguments,
+                    const testing::Matcher<const std::string&>& says) {
+  const ProgramResult result = run_program(arguments);
+  SCOPED_TRACE(testing::PrintToString(arguments));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, AllOf(StartsWith("forager: "), says));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
+TEST(CmdEsc, ListSaysWhatTheLinesMean) {
+  const ProgramResult text = run_program({"esc", "list"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.out, AllOf(HasSubstr("emulated"), HasSubstr("front-left"), HasSubstr("50.0 Hz")));
+  const auto json = lines_of(run_program({"esc", "list", "--json"}).out);
+  ASSERT_EQ(json.size(), 1U);
+  EXPECT_EQ(json[0]["motors"].size(), 4U);
+  EXPECT_EQ(json[0]["stop_us"], 1000.0);
+}
+
+TEST(CmdEsc, TurnsOneMotorAndStops) {
+  const ProgramResult result =
+      run_program({"esc", "run", "--arm", "--props-off", kSentence, "--motor", "rear-left", "--throttle",
+                   "0.2", "--hold", "2", "--json", "--pulses"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto lines = lines_of(result.out);
+  double most_rear_left = 0.0;
+  for (const auto& line : lines) {
+    if (line["event"] != "note" || line["source"] != "esc") continue;
+    const std::string text = line["text"];
+    const auto at = text.find(" us");
+    if (at == std::string::npos || !text.ends_with(" us")) continue;
+    const auto blank = text.rfind(' ', at - 1);
+    const double us = std::stod(text.substr(blank + 1));
+    if (text.starts_with("rear-left"))
+      most_rear_left = std::max(most_rear_left, us);
+    else
+      EXPECT_LE(us, 1060.0) << text;
+  }
+  EXPECT_NEAR(most_rear_left, 1060.0 + 0.2 * 800.0, 0.2);
+  const auto& end = lines.back();
+  EXPECT_EQ(end["event"], "end");
+  for (const auto& motor : end["motors"]) EXPECT_EQ(motor["pulse_us"], 1000.0);
+}
+
+TEST(CmdEsc, CalibratesTheEmulatedOnes) {
+  const ProgramResult result = run_program({"esc", "calibrate", "--arm", "--props-off", kSentence, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto end = lines_of(result.out).back();
+  for (const auto& motor : end["motors"]) {
+    EXPECT_EQ(motor["emulated"]["calibrated"], true);
+    EXPECT_EQ(motor["emulated"]["stop_us"], 1062.5);
+    EXPECT_EQ(motor["emulated"]["full_us"], 1937.5);
+    EXPECT_EQ(motor["pulse_us"], 1000.0);
+  }
+}
+
+TEST(CmdEsc, StopLeavesStopPulses) {
+  const ProgramResult result = run_program({"esc", "stop", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const auto& motor : lines_of(result.out).back()["motors"]) EXPECT_EQ(motor["pulse_us"], 1000.0);
+}
+
+TEST(CmdEsc, CtrlCStopsTheMotors) {
+  Program program({"esc", "run", "--arm", "--props-off", kSentence, "--throttle", "0.3", "--hold", "60",
+                   "--real-time", "--json"});
+  ASSERT_TRUE(program.wait_for_out("arming -> armed", 15s)) << program.so_far().err;
+  program.send_signal(SIGINT);
+  const ProgramResult result = program.finish();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("SIGINT"));
+  const auto end = lines_of(result.out).back();
+  EXPECT_EQ(end["event"], "end");
+  EXPECT_EQ(end["state"], "stopped");
+  for (const auto& motor : end["motors"]) EXPECT_EQ(motor["pulse_us"], 1000.0);
+}
+
+TEST(CmdEsc, NothingTurnsWithoutArmAndTheSentence) {
+  expect_refusal({"esc", "run", "--throttle", "0.2", "--hold", "1"}, HasSubstr("--arm"));
+  expect_refusal({"esc", "run", "--arm", "--throttle", "0.2", "--hold", "1"}, HasSubstr(kSentence));
+  expect_refusal({"esc", "run", "--arm", "--props-off", "yes", "--throttle", "0.2", "--hold", "1"},
+                 HasSubstr(kSentence));
+  expect_refusal({"esc", "calibrate", "--props-off", kSentence}, HasSubstr("--arm"));
+  expect_refusal({"esc", "calibrate", "--arm"}, HasSubstr(kSentence));
+}
+
+TEST(CmdEsc, SaysWhatIsWrongWithTheRequest) {
+  const auto with = [](std::vector<std::string> more) {
+    std::vector<std::string> all{"esc", "run", "--arm", "--props-off", kSentence};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_refusal(with({"--throttle", "1.2", "--hold", "1"}), HasSubstr("1.2"));
+  expect_refusal(with({"--throttle", "nan", "--hold", "1"}), HasSubstr("nan"));
+  expect_refusal(with({"--throttle", "0.2", "--hold", "0"}), HasSubstr("--hold"));
+  expect_refusal(with({"--hold", "1"}), HasSubstr("--throttle"));
+  expect_refusal(with({"--throttle", "0.2"}), HasSubstr("--hold"));
+  expect_refusal(with({"--throttle", "0.2", "--hold", "1", "--motor", "left"}),
+                 AllOf(HasSubstr("'left'"), HasSubstr("rear-left")));
+  expect_refusal({"esc"}, HasSubstr("list, run, calibrate, stop"));
+}
+
+TEST(CmdEsc, ABoardFileNamesItsLines) {
+  ScratchFolder folder;
+  const auto board = [&](const std::string& esc) {
+    return folder.write("board.toml", "[board]\nname = \"bench\"\n" + esc);
+  };
+  const std::string good = board(R"([esc]
+output = "emulated"
+frequency_hz = 400
+protocol = "oneshot125"
+motor = [{ name = "left", channel = 0 }, { name = "right", channel = 3 }]
+most_throttle = 0.3
+)");
+  const auto list = lines_of(run_program({"esc", "list", "--board", good, "--json"}).out);
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0]["protocol"], "OneShot125");
+  EXPECT_EQ(list[0]["motors"][1]["channel"], 3);
+  const ProgramResult run = run_program({"esc", "run", "--board", good, "--arm", "--props-off", kSentence,
+                                         "--motor", "right", "--throttle", "0.2", "--hold", "1"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+
+  expect_refusal({"esc", "list", "--board", board("")}, HasSubstr("[esc]"));
+  expect_refusal({"esc", "list", "--board", board("[esc]\nfrequency_hz = 500\n")}, HasSubstr("490 Hz"));
+  expect_refusal({"esc", "list", "--board", board("[esc]\nidle_us = 1450\n")}, HasSubstr("calibrate"));
+  expect_refusal({"esc", "list", "--board",
+                  board("[esc]\nmotor = [{ name = \"a\", channel = 1 }, { name = "
+                        "\"b\", channel = 1 }]\n")},
+                 HasSubstr("twice"));
+  expect_refusal({"esc", "list", "--board", board("[esc]\nthrotle = 1\n")}, HasSubstr("throtle"));
+}
+
+TEST(CmdEsc, ARealBoardThatIsNotThereSaysSo) {
+  ScratchFolder folder;
+  const std::string board = folder.write("board.toml", R"([board]
+name = "bench"
+[esc]
+chip = "pwmchip987"
+)");
+  const ProgramResult list = run_program({"esc", "list", "--board", board});
+  EXPECT_EQ(list.exit_code, 0) << "nothing is opened to list";
+  const ProgramResult stop = run_program({"esc", "stop", "--board", board});
+  EXPECT_EQ(stop.exit_code, 3);
+  EXPECT_THAT(stop.err, HasSubstr("pwmchip987"));
+  expect_refusal({"esc", "calibrate", "--board", board, "--arm", "--props-off", kSentence},
+                 HasSubstr("--battery-off"));
+}
+
+}  // namespace
+}  // namespace forager::tools
