@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::string_view kSource = "drive";
 
+constexpr hal::Duration kMeasured = std::chrono::milliseconds(70);  // two frames of the camera
+
 bool rolls(servo::SteerPhase phase) {
   return phase == servo::SteerPhase::releasing || phase == servo::SteerPhase::driving ||
          phase == servo::SteerPhase::coasting;
@@ -61,6 +63,7 @@ void DriveLoop::update(hal::Instant now) {
   sense(now);
   look(now);
   output_ = steer_.update(input_, now);
+  note_steering(now);
   judge(now);
   run_phase(now);
   act(now);
@@ -107,7 +110,9 @@ void DriveLoop::judge(hal::Instant now) {
     status_.speed_m_s = estimate.speed_m_s();
     status_.yaw_rate_rad_s = estimate.yaw_rate_rad_s();
     status_.corridor_m = mission_.corridor.distance_m(status_.pose_world.position);
-    if (pose_fresh) brakes_.observe({status_.speed_m_s, status_.yaw_rate_rad_s, now});
+    // Brakes are not judged by dead reckoning.
+    if (estimate.pose_age(now) <= kMeasured)
+      brakes_.observe({status_.speed_m_s, status_.yaw_rate_rad_s, now});
   }
   const AutopilotState& autopilot = autopilot_->state();
   was_armed_ = was_armed_ || (autopilot.armed && status_.phase == DrivePhase::driving);
@@ -132,7 +137,8 @@ void DriveLoop::judge(hal::Instant now) {
   interlocks_.say(Interlock::brakes, brakes_good, brakes.reason);
   interlocks_.say(Interlock::corridor, inside);
   interlocks_.say(Interlock::motion,
-                  fault != servo::SteerFault::no_motion && fault != servo::SteerFault::runs_away,
+                  fault != servo::SteerFault::no_motion && fault != servo::SteerFault::runs_away &&
+                      fault != servo::SteerFault::spins,
                   to_string(fault));
   interlocks_.say(Interlock::command, now < go_until_);
   interlocks_.say(Interlock::way_ahead, !blocked_);
@@ -154,6 +160,17 @@ void DriveLoop::run_phase(hal::Instant now) {
     case DrivePhase::done:
       return;
   }
+}
+
+void DriveLoop::note_steering(hal::Instant now) {
+  if (steer_.phase() == noted_) return;
+  noted_ = steer_.phase();
+  const servo::MotionEstimate& estimate = steer_.estimate();
+  fmt::basic_memory_buffer<char, 128> line;
+  fmt::format_to(std::back_inserter(line), "{} step {} of {} at {:.3f} {:.3f} heading {:.1f}",
+                 to_string(noted_), steer_.step() + 1, steer_.steps(), estimate.pose().position.x,
+                 estimate.pose().position.y, hal::rad_to_deg(estimate.pose().yaw_rad));
+  journal_->note(now, "steering", {line.data(), line.size()});
 }
 
 // Thrust and brakes of this update. What is not allowed is not merely left out: zero and locked are sent.

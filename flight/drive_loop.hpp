@@ -35,6 +35,13 @@ struct DriveDevices {
 };
 
 struct DriveConfig {
+  // A wheel's speed is known to about 0.1 m/s while the vehicle swings about it, and a touch of a brake may
+  // make a slow wheel stand for a moment.
+  DriveConfig() {
+    brakes.watch.slip_m_s = 0.2;
+    brakes.watch.turning_m_s = 0.25;
+    brakes.watch.confirm = std::chrono::milliseconds(200);
+  }
   servo::BrakeSteerConfig steer;
   servo::BrakePairConfig brakes;
   VisionFilterConfig vision;
@@ -126,6 +133,7 @@ class DriveLoop final : public hal::Halt {
   void sense(hal::Instant now);
   void look(hal::Instant now);
   void judge(hal::Instant now);
+  void note_steering(hal::Instant now);
   void run_phase(hal::Instant now);
   void act(hal::Instant now);
   void wait_for_links(hal::Instant now);
@@ -156,6 +164,7 @@ class DriveLoop final : public hal::Halt {
   servo::SteerOutput output_;
   hal::Instant go_until_{hal::Duration::min()};
   hal::Instant last_pose_{hal::Duration::min()};  // stamp of the newest given to the controller
+  servo::SteerPhase noted_ = servo::SteerPhase::idle;
   bool button_failed_ = false;
   bool button_pressed_ = false;
   bool halt_asked_ = false;

@@ -87,10 +87,8 @@ void DriveLoop::wait_for_arming(hal::Instant now) {
 
 void DriveLoop::drive(hal::Instant now) {
   if (halt_asked_) return stop(DriveEnd::halted, "asked to stop", now);
-  if (interlocks_.tripped()) {
-    const InterlockRule& lost = *interlocks_.first_lost();
-    return stop(end_of(lost.interlock), lost.why, now);
-  }
+  if (const InterlockRule* lost = interlocks_.first_latched(); lost != nullptr)
+    return stop(end_of(lost->interlock), lost->why, now);
   if (steer_.phase() == servo::SteerPhase::arrived) return stop(DriveEnd::arrived, "at the goal", now);
   if (steer_.phase() == servo::SteerPhase::failed) {
     const bool lost = steer_.fault() == servo::SteerFault::pose_lost;

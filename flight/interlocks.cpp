@@ -36,6 +36,7 @@ void Interlocks::update(hal::Instant now) {
   may_arm_ = may_thrust_ = true;
   tripped_ = must_disarm_ = false;
   const InterlockRule* first = nullptr;
+  first_latched_ = nullptr;
   for (const InterlockRule& rule : kInterlockTable) {
     Row& row = rows_[index(rule.interlock)];
     if (row.said != row.holds) {
@@ -55,6 +56,7 @@ void Interlocks::update(hal::Instant now) {
     tripped_ = tripped_ || row.latched;
     must_disarm_ = must_disarm_ || (row.latched && rule.disarms);
     if (first == nullptr) first = &rule;
+    if (row.latched && first_latched_ == nullptr) first_latched_ = &rule;
   }
   if (first != first_lost_) lost_since_ = now;
   first_lost_ = first;

@@ -73,6 +73,8 @@ class Interlocks {
   // The first row, in the order of the table, that is in the way of thrust; and since when.
   [[nodiscard]] const InterlockRule* first_lost() const { return first_lost_; }
   [[nodiscard]] hal::Instant lost_since() const { return lost_since_; }
+  // The first row that latched, or null: why the mission is over.
+  [[nodiscard]] const InterlockRule* first_latched() const { return first_latched_; }
 
  private:
   struct Row {
@@ -94,6 +96,7 @@ class Interlocks {
   bool tripped_ = false;
   bool must_disarm_ = false;
   const InterlockRule* first_lost_ = &kInterlockTable.front();
+  const InterlockRule* first_latched_ = nullptr;
   hal::Instant lost_since_{};
 };
 

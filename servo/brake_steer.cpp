@@ -10,6 +10,12 @@ constexpr double kStandingSpeed = 0.03;    // m/s
 constexpr double kStandingYawRate = 0.04;  // rad/s
 constexpr double kPitchGain = 4.0;         // 1/s, speed by pitch
 
+// Towards zero, and not beyond it within an update.
+double slowing(double speed, double brake) {
+  constexpr double kUpdate = 0.02;  // s
+  return -std::copysign(std::min(brake, std::abs(speed) / kUpdate), speed);
+}
+
 }  // namespace
 
 std::string_view to_string(SteerPhase phase) {
@@ -20,8 +26,8 @@ std::string_view to_string(SteerPhase phase) {
 }
 
 std::string_view to_string(SteerFault fault) {
-  constexpr std::array<std::string_view, 7> kNames{"none",        "no_motion", "runs_away", "pose_lost",
-                                                   "unreachable", "late",      "missed"};
+  constexpr std::array<std::string_view, 8> kNames{"none",      "no_motion",   "spins", "runs_away",
+                                                   "pose_lost", "unreachable", "late",  "missed"};
   return kNames[static_cast<std::size_t>(fault)];
 }
 
@@ -89,6 +95,14 @@ void BrakeSteer::expect(hal::Instant now) {
       if (pushes && !config_.speed_by_pitch && std::abs(estimate_.yaw_rate_rad_s()) > 0.1)
         yaw_accel = -std::copysign(learnt_.turn_coast_rad_s2, estimate_.yaw_rate_rad_s());
       break;
+    case SteerPhase::settling:
+    case SteerPhase::holding:
+      // Both brakes grip: it slows down whether a camera sees it or not, and then stands.
+      if (hal::to_seconds(now - since_) > learnt_.stop_lag_s) {
+        accel = slowing(estimate_.speed_m_s(), config_.brake_m_s2);
+        yaw_accel = slowing(estimate_.yaw_rate_rad_s(), config_.turn_brake_rad_s2);
+      }
+      break;
     default:
       break;
   }
@@ -142,7 +156,6 @@ void BrakeSteer::run(hal::Instant now) {
 void BrakeSteer::enter(SteerPhase phase, hal::Instant now) {
   phase_ = phase;
   since_ = now;
-  stuck_since_.reset();
   runaway_since_.reset();
   rate_mark_.set = false;
 }

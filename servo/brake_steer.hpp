@@ -50,6 +50,7 @@ enum class SteerPhase : std::uint8_t {
 enum class SteerFault : std::uint8_t {
   none,
   no_motion,    // thrust, an open wheel, and it does not move: motors dead or a brake stuck
+  spins,        // both brakes open, and it turns again and again: one of them drags
   runs_away,    // both locked, and it moves: brakes gone, or no grip
   pose_lost,    // no pose for too long
   unreachable,  // no turn leads to the step
@@ -154,7 +155,9 @@ class BrakeSteer {
   hal::Instant leg_since_;  // of the present step
   hal::Instant valid_until_{hal::Duration::min()};
   std::optional<hal::Instant> still_since_;
-  std::optional<hal::Instant> stuck_since_;
+  std::optional<hal::Instant> stuck_since_;  // pushed, and still about where it was then
+  hal::Pose stuck_at_;
+  int spins_ = 0;  // in a row
   std::optional<hal::Instant> runaway_since_;
 
   Brake side_ = Brake::none;  // of the present turn

@@ -18,7 +18,7 @@ struct SteerLearnt {
   double stop_lag_s = 0.13;  // from the command until the brakes grip, rolling straight
   std::array<double, 2> turn_stop_lag_s{0.13, 0.13};  // left and right turns
   double bend_rad_m = 0.0;                            // how its way bends by itself, left positive
-  std::array<double, 2> dab_s{0.07, 0.07};            // left, right: a touch that turns it by dab_rad_s
+  std::array<double, 2> dab_s{0.05, 0.05};            // left, right: a touch that turns it by dab_rad_s
 };
 
 struct BrakeSteerConfig {

@@ -17,7 +17,11 @@ constexpr double kOffLine = 0.06;      // m beyond what was planned for
 constexpr double kDabSpeed = 0.12;     // m/s; slower, a touch would stop it
 constexpr double kDabAbove = 0.7;      // of a touch
 constexpr hal::Duration kDabShows = std::chrono::milliseconds(250);  // servo and pad are back by then
-constexpr double kNearGoal = 0.03;                                   // m
+constexpr double kTooMuch = 0.7;
+constexpr int kMostSpins = 4;
+constexpr double kMovedM = 0.03;
+constexpr double kMovedRad = 0.05;
+constexpr double kNearGoal = 0.03;     // m
 constexpr double kSpeedMargin = 0.12;  // m/s above the limit until it brakes for it
 
 double blend(double old_value, double seen, double low, double high) {
@@ -101,6 +105,7 @@ void BrakeSteer::drive(hal::Instant now) {
     return;
   }
   if (here.ahead_m <= stop + kNearGoal) {
+    spins_ = 0;
     if (!roll_first_ && pass_on(here)) return;
     return lock();
   }
@@ -108,6 +113,11 @@ void BrakeSteer::drive(hal::Instant now) {
   const bool spins = std::abs(estimate_.yaw_rate_rad_s()) > kSpinning;
   if ((off_line && !roll_first_) || spins) {
     ++stats_.replans;
+    // A touch that was too much; or nothing was touched, and it spins all the same.
+    if (spins && dab_open_)
+      learnt_.dab_s[dab_ == Brake::right ? 1 : 0] *= kTooMuch;
+    else if (spins && ++spins_ >= kMostSpins)
+      return fail(SteerFault::spins);
     return lock();
   }
   keep_line(here, now);
@@ -149,7 +159,7 @@ void BrakeSteer::keep_line(const Aim& here, hal::Instant now) {
     const double got = (right ? -1.0 : 1.0) * (rate - dab_from_);
     double& length = learnt_.dab_s[right ? 1 : 0];
     const double factor = std::clamp(std::sqrt(config_.dab_rad_s / std::max(0.02, got)), 0.75, 1.25);
-    length = std::clamp(length * factor, 0.02, 0.3);
+    length = std::clamp(length * factor, 0.01, 0.3);
     dab_ = Brake::none;
   }
   if (now < dab_judged_ || checking_speed_ || estimate_.speed_m_s() < kDabSpeed) return;
@@ -178,7 +188,7 @@ bool BrakeSteer::pass_on(const Aim& here) {
     return false;
   ++step_;
   ++stats_.passed;
-  tries_ = 0;
+  tries_ = spins_ = 0;
   drive_to_ = steps_[step_];
   leg_miss_m_ = 2.0 * miss;
   leg_since_ = since_;
@@ -190,12 +200,14 @@ void BrakeSteer::watch(hal::Instant now) {
   const double speed = std::abs(estimate_.speed_m_s());
   const double rate = std::abs(estimate_.yaw_rate_rad_s());
   const bool pushes = phase_ == SteerPhase::turning || (phase_ == SteerPhase::driving && !checking_speed_);
-  if (pushes && speed < 0.02 && rate < 0.04) {
-    if (!stuck_since_) stuck_since_ = now;
-    if (now - *stuck_since_ > config_.no_motion) return fail(SteerFault::no_motion);
-  } else {
-    stuck_since_.reset();
+  const hal::Pose& at = estimate_.pose();
+  const bool moved = hal::distance_xy(at.position, stuck_at_.position) > kMovedM ||
+                     std::abs(hal::angle_difference(at.yaw_rad, stuck_at_.yaw_rad)) > kMovedRad;
+  if (!stuck_since_ || !pushes || moved) {
+    stuck_since_ = now;
+    stuck_at_ = at;
   }
+  if (now - *stuck_since_ > config_.no_motion) return fail(SteerFault::no_motion);
   const bool locked = phase_ == SteerPhase::settling;
   if (locked && (speed > 0.08 || rate > 0.15)) {
     if (!runaway_since_) runaway_since_ = now;

@@ -10,7 +10,6 @@ namespace {
 constexpr double kMostAimOff = 0.12;      // rad, against a way that bends
 constexpr double kTryWidening = 0.25;     // every further try is content with so much more
 constexpr double kMostBack = 1.7;         // rad
-constexpr double kNearStep = 0.35;        // m
 constexpr double kMostHeadingTurn = 0.6;  // rad; more than this is not corrected at the goal
 
 }  // namespace
@@ -73,10 +72,12 @@ void BrakeSteer::plan(hal::Instant now) {
                        config_.step_miss_m, now);
   }
   if (way.brake == Brake::none) return start_drive(steps_[step_], miss, now);
-  // Circling back for a step that was nearly met costs more room than it is worth.
-  if (!last_step() && way.turn_rad > kMostBack && here.distance_m < kNearStep) {
-    next_step(now);
-    return;
+  // Circling back for a step that was nearly met costs more room than it is worth, if the one after it can be
+  // had more easily.
+  if (!last_step() && way.turn_rad > kMostBack) {
+    const Aim after = aim_at(steps_[step_ + 1]);
+    const auto other = plan_turn_then_drive({after.ahead_m, after.left_m}, turn);
+    if (other && other->no_way == NoWay::none && other->chosen.turn_rad < kMostBack) return next_step(now);
   }
   if (last_step() && way.turn_rad > kMostBack && here.distance_m < config_.goal_margin_m) return finish(now);
   to_heading_ = false;
