@@ -7,7 +7,6 @@
 #include "boards/world_builder.hpp"
 #include "hal/linux/tcp_listener.hpp"
 #include "hal/linux/udp_peer.hpp"
-#include "mocks/gen2_field.hpp"
 #include "mocks/http_server.hpp"
 #include "mocks/sim_reader.hpp"
 #include "mocks/truth_feed.hpp"
@@ -59,10 +58,10 @@ class ReaderServer final : public EmulatedServer {
         truth_line_(std::move(sockets.truth)),
         truth_port_(truth_line_->local_port()),
         body_(*truth_line_, start_of(scene)),
-        field_(world_, body_, antennas_of(scene), air_of(scene), seed_for(options.seed, SeedStream::air)),
+        field_(make_field(scene, world_, body_, seed_for(options.seed, SeedStream::air))),
         rest_door_(std::move(sockets.rest)),
         stream_door_(std::move(sockets.stream)),
-        reader_(reader_config(options), field_, journal),
+        reader_(reader_config(options), *field_, journal),
         rest_(rest_config(options), reader_) {}
 
   void update(hal::Instant now) override {
@@ -131,7 +130,7 @@ class ReaderServer final : public EmulatedServer {
   std::unique_ptr<hal::UdpPeer> truth_line_;
   std::uint16_t truth_port_;
   mocks::TruthFollower body_;
-  mocks::SimTagField field_;
+  std::unique_ptr<mocks::TagField> field_;
   // The doors own the connections that reader and server borrow.
   Door rest_door_;
   Door stream_door_;
@@ -144,11 +143,7 @@ class ReaderServer final : public EmulatedServer {
 hal::Result<std::unique_ptr<EmulatedServer>> emulate_reader(const Scene& scene,
                                                             const EmulatedReaderOptions& options,
                                                             hal::Journal& journal) {
-  if (auto valid = validate(air_of(scene), antennas_of(scene)); !valid) {
-    hal::Error error = std::move(valid).error();
-    error.device = scene.file;
-    return hal::fail(std::move(error));
-  }
+  FORAGER_TRY(check_air(scene));
   auto rest = hal::TcpListener::listen(options.host, options.rest_port);
   if (!rest) return hal::fail(std::move(rest).error());
   auto stream = hal::TcpListener::listen(options.host, options.stream_port);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "boards/scene_sections.hpp"
+#include "boards/scene_tags.hpp"
 
 namespace forager::boards {
 namespace {
@@ -91,7 +92,9 @@ hal::Result<> change_policy(Scene& scene, PolicyKind policy) {
 hal::Result<Scene> load_scene(const std::string& path) {
   auto root = load_config(path);
   if (!root) return hal::fail(std::move(root).error());
-  return read_scene(*root, path);
+  auto scene = read_scene(*root, path);
+  if (scene) FORAGER_TRY(load_tag_file(*scene));
+  return scene;
 }
 
 }  // namespace forager::boards

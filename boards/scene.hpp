@@ -1,17 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "boards/config_node.hpp"
+#include "boards/scene_store.hpp"
 #include "flight/obstacle_guard.hpp"
 #include "hal/error.hpp"
 #include "hal/pose.hpp"
 #include "hal/time.hpp"
 #include "reader/new_tag_counter.hpp"
 #include "reader/read_plan.hpp"
+
+namespace forager::mocks {
+class TagList;
+}
 
 namespace forager::boards {
 
@@ -115,14 +121,37 @@ struct SceneRadio {
   double rician_k_db = 6.0;        // frozen multipath: power of the direct path over the scattered ones
   double occlusion_db = 0.0;       // loss for each shelf crossed
   double rssi_at_1m_dbm = -51.0;
-  double patience_s = 0.018;           // the radio leaves a port that brought nothing new for so long, median
-  double singulation_s = 1.0 / 300.0;  // one reply at most in this time
+  double patience_s = 0.018;  // the radio leaves a port that brought nothing new for so long, median
+  std::optional<double> singulation_s;  // one reply at most in this time; by default what the link takes
   bool operator==(const SceneRadio&) const = default;
+};
+enum class AirModel : std::uint8_t { round, slot };
+// Gen2 between the simulated reader and tags.
+struct SceneAir {
+  AirModel model = AirModel::round;
+  double tari_us = 25.0;
+  double pie = 2.0;
+  double blf_khz = 250.0;
+  int m = 4;  // cycles per bit: 1 FM0, 2, 4, 8 Miller
+  bool pilot_tone = false;
+  double first_q = 4.0;
+  double q_step = 0.3;
+  double round_overhead_s = 0.010;
+  std::optional<double> dwell_s;  // the same for each port; by default the reader decides by what it hears
+  double hop_interval_s = 0.0;
+  double capture_probability = 0.0;
+  bool operator==(const SceneAir&) const = default;
 };
 struct SceneWorld {
   std::vector<SceneShelf> shelves;
   std::vector<SceneGroup> groups;
+  SceneStore store;      // kind empty: none
+  std::string tag_file;  // CSV, as the scene names it; empty: none
+  // What is in it; load_scene() reads it, read_scene() does not.
+  std::shared_ptr<const mocks::TagList> file_tags;
+  SceneSkip skip;
   SceneRadio radio;
+  SceneAir air;
   bool operator==(const SceneWorld&) const = default;
 };
 

@@ -52,9 +52,27 @@ SceneRadio read_radio(ConfigReader table) {
   r.rician_k_db = table.number("rician_k_db", r.rician_k_db, {-20.0, 100.0});
   r.rssi_at_1m_dbm = table.number("rssi_at_1m_dbm", r.rssi_at_1m_dbm, {-90.0, 0.0});
   r.patience_s = table.number("patience_s", r.patience_s, {0.001, 60.0});
-  r.singulation_s = table.number("singulation_s", r.singulation_s, {0.0, 1.0});
+  r.singulation_s = table.optional_number("singulation_s", {0.0, 1.0});
   r.occlusion_db = table.number("occlusion_db", r.occlusion_db, {0.0, 60.0});
   return r;
+}
+
+SceneAir read_air(ConfigReader table) {
+  SceneAir a;
+  a.model = table.choice("model", "round", {"round", "slot"}) == "slot" ? AirModel::slot : AirModel::round;
+  a.tari_us = table.number("tari_us", a.tari_us, {6.25, 25.0});
+  a.pie = table.number("pie", a.pie, {1.5, 2.0});
+  a.blf_khz = table.number("blf_khz", a.blf_khz, {40.0, 640.0});
+  const std::string encoding = table.choice("encoding", "M4", {"FM0", "M2", "M4", "M8"});
+  a.m = encoding == "FM0" ? 1 : encoding.back() - '0';
+  a.pilot_tone = table.flag("pilot_tone", a.pilot_tone);
+  a.first_q = table.number("first_q", a.first_q, {0.0, 15.0});
+  a.q_step = table.number("q_step", a.q_step, {0.05, 1.0});
+  a.round_overhead_s = 1e-3 * table.number("round_overhead_ms", 1e3 * a.round_overhead_s, {0.0, 1000.0});
+  a.dwell_s = table.optional_number("dwell_s", {0.02, 60.0});
+  a.hop_interval_s = table.number("hop_interval_s", a.hop_interval_s, {0.0, 1000.0});
+  a.capture_probability = table.number("capture_probability", a.capture_probability, {0.0, 1.0});
+  return a;
 }
 
 }  // namespace
@@ -63,7 +81,11 @@ SceneWorld read_world(ConfigReader table) {
   SceneWorld world;
   for (ConfigReader& shelf : table.tables("shelves")) world.shelves.push_back(read_shelf(shelf));
   for (ConfigReader& group : table.tables("groups")) world.groups.push_back(read_group(group));
+  world.store = read_store(table.table("generate"));
+  world.tag_file = table.text("tag_file", "");
   world.radio = read_radio(table.table("radio"));
+  world.air = read_air(table.table("air"));
+  world.skip = read_skip(table.table("skip"));
   return world;
 }
 

@@ -1,5 +1,10 @@
 #include "boards/sim_air.hpp"
 
+#include <utility>
+
+#include "mocks/gen2_field.hpp"
+#include "mocks/gen2_slot_field.hpp"
+
 namespace forager::boards {
 
 mocks::AirParameters air_of(const Scene& scene) {
@@ -17,9 +22,57 @@ mocks::AirParameters air_of(const Scene& scene) {
   air.rician_k_db = radio.rician_k_db;
   air.occlusion_db = radio.occlusion_db;
   air.rssi_at_1m_dbm = radio.rssi_at_1m_dbm;
+  const SceneSkip& skip = scene.world.skip;
+  air.hazard_cut = skip.hazard_cut;
+  air.skip_by_grid = skip.grid;
+  air.skip_behind = skip.behind;
+  air.skip_blind_antennas = skip.blind_antennas;
+  air.skip_silent = skip.silent;
+  air.unchanged_m = skip.unchanged_m;
+  air.unchanged_rad = skip.unchanged_rad;
   air.patience_median_s = radio.patience_s;
-  air.singulation_s = radio.singulation_s;
+  // What the round-level field leaves out it takes from the slots of the link.
+  const mocks::RoundParameters round = mocks::round_parameters(slots_of(scene));
+  air.round_s = round.round_s;
+  air.singulation_s = radio.singulation_s.value_or(round.singulation_s);
+  if (scene.world.air.dwell_s) {
+    air.max_dwell_s = air.patience_median_s = *scene.world.air.dwell_s;
+    air.patience_log_sigma = 0.0;
+  }
   return air;
+}
+
+mocks::SlotParameters slots_of(const Scene& scene) {
+  const SceneAir& air = scene.world.air;
+  mocks::SlotParameters slots;
+  slots.link = {
+      .tari_us = air.tari_us, .pie = air.pie, .blf_khz = air.blf_khz, .m = air.m, .trext = air.pilot_tone};
+  slots.first_q = air.first_q;
+  slots.q_step = air.q_step;
+  slots.round_overhead_s = air.round_overhead_s;
+  slots.hop_interval_s = air.hop_interval_s;
+  slots.capture_probability = air.capture_probability;
+  return slots;
+}
+
+hal::Result<> check_air(const Scene& scene) {
+  const auto named = [&scene](hal::Result<> result) {
+    if (!result) result.error().device = scene.file;
+    return result;
+  };
+  // Before the link's slots are counted, for they may be of any length.
+  if (auto link = validate(slots_of(scene).link); !link) return named(std::move(link));
+  const mocks::AirParameters air = air_of(scene);
+  if (auto valid = validate(air, antennas_of(scene)); !valid) return named(std::move(valid));
+  return named(validate(slots_of(scene), air));
+}
+
+std::unique_ptr<mocks::TagField> make_field(const Scene& scene, const mocks::World& world,
+                                            const mocks::TrueBody& body, std::uint64_t seed) {
+  if (scene.world.air.model == AirModel::slot)
+    return std::make_unique<mocks::SlotTagField>(world, body, antennas_of(scene), air_of(scene),
+                                                 slots_of(scene), seed);
+  return std::make_unique<mocks::SimTagField>(world, body, antennas_of(scene), air_of(scene), seed);
 }
 
 std::vector<mocks::AntennaMounting> antennas_of(const Scene& scene) {

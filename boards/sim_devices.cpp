@@ -3,7 +3,6 @@
 #include "boards/device_set.hpp"
 #include "boards/sim_air.hpp"
 #include "boards/world_builder.hpp"
-#include "mocks/gen2_field.hpp"
 #include "mocks/memory_stream.hpp"
 #include "mocks/ray_cast_depth.hpp"
 #include "mocks/sim_autopilot.hpp"
@@ -27,9 +26,8 @@ class SimDevices final : public DeviceSet {
         telemetry_("sim autopilot", mocks::MemoryStreamKind::datagrams, kTelemetryBytes),
         events_("sim reader events", mocks::MemoryStreamKind::bytes, kStreamBytes),
         autopilot_(telemetry_.far(), autopilot_config(scene, options.seed)),
-        field_(world_, autopilot_, antennas_of(scene), air_of(scene),
-               seed_for(options.seed, SeedStream::air)),
-        reader_(reader_config(options), field_, journal()),
+        field_(make_field(scene, world_, autopilot_, seed_for(options.seed, SeedStream::air))),
+        reader_(reader_config(options), *field_, journal()),
         rest_(
             {.name = "http sim-reader", .latency = std::chrono::milliseconds(5), .user = {}, .password = {}},
             reader_),
@@ -78,7 +76,7 @@ class SimDevices final : public DeviceSet {
   mocks::MemoryStreamPair telemetry_;
   mocks::MemoryStreamPair events_;
   mocks::SimAutopilot autopilot_;
-  mocks::SimTagField field_;
+  std::unique_ptr<mocks::TagField> field_;
   mocks::SimReader reader_;
   mocks::SimHttpClient rest_;
   mocks::SimDepthCamera depth_;
@@ -88,11 +86,7 @@ class SimDevices final : public DeviceSet {
 }  // namespace
 
 hal::Result<std::unique_ptr<DeviceSet>> make_sim_devices(const Scene& scene, const DeviceOptions& options) {
-  if (auto valid = validate(air_of(scene), antennas_of(scene)); !valid) {
-    hal::Error error = std::move(valid).error();
-    error.device = scene.file;
-    return hal::fail(std::move(error));
-  }
+  FORAGER_TRY(check_air(scene));
   return std::make_unique<SimDevices>(scene, options);
 }
 

@@ -1,6 +1,9 @@
 #include "boards/world_builder.hpp"
 
+#include <string_view>
+
 #include "hal/random.hpp"
+#include "mocks/store_plan.hpp"
 #include "mocks/warehouse.hpp"
 
 namespace forager::boards {
@@ -9,11 +12,34 @@ std::uint64_t seed_for(std::uint64_t seed, SeedStream stream) {
   return hal::Random::stream(seed, static_cast<std::uint64_t>(stream)).next();
 }
 
+namespace {
+
+mocks::StoreKind store_kind(std::string_view name) {
+  if (name == "t") return mocks::StoreKind::t;
+  if (name == "square") return mocks::StoreKind::square;
+  if (name == "halls") return mocks::StoreKind::halls;
+  return name == "random" ? mocks::StoreKind::random : mocks::StoreKind::aisles;
+}
+
+mocks::StorePlan store_plan(const SceneStore& store) {
+  mocks::StorePlan plan;
+  plan.kind = store_kind(store.kind);
+  plan.tags = store.tags;
+  plan.tags_per_m2 = store.tags_per_m2;
+  plan.aisle_m = store.aisle_m;
+  plan.shelf_depth_m = store.shelf_depth_m;
+  plan.shelf_height_m = store.shelf_height_m;
+  return plan;
+}
+
+}  // namespace
+
 mocks::World build_world(const Scene& scene, std::uint64_t seed) {
   mocks::World world;
   for (const SceneShelf& shelf : scene.world.shelves) world.obstacles.push_back({shelf.min, shelf.max});
   hal::Random random(seed_for(seed, SeedStream::tags));
   constexpr std::uint32_t kCompany = 0x9BB600;
+  constexpr std::uint32_t kStoreItem = 0x80000;  // beyond what groups count up to
   std::uint32_t item = 1;
   for (const SceneGroup& group : scene.world.groups) {
     mocks::EpcSequence epcs(kCompany, item++);
@@ -27,6 +53,12 @@ mocks::World build_world(const Scene& scene, std::uint64_t seed) {
       add_group(world, box, epcs, random);
     }
   }
+  if (!scene.world.store.kind.empty()) {
+    mocks::EpcSequence epcs(kCompany, kStoreItem);
+    // What the scene reader let through makes a store.
+    static_cast<void>(add_store(world, store_plan(scene.world.store), epcs, random));
+  }
+  if (scene.world.file_tags != nullptr) append(world.tags, *scene.world.file_tags);
   return world;
 }
 

@@ -68,6 +68,9 @@ links = {}
 world.shelves = [{ min = [0, 0, 0], max = [1, 1, 1] }]
 world.groups = [{ tags = 1, centres = [[0, 0, 0]] }]
 world.radio = {}
+world.generate = { kind = "aisles" }
+world.skip = {}
+world.air = {}
 )";
 
 void collect(const ConfigNode& node, const std::string& path,
