@@ -9,6 +9,11 @@ namespace forager::mocks {
 namespace {
 
 constexpr double kPoseAge_s = 0.005;
+// Bounds hold within kBoundSlack_m and are renewed after kBoundMove_m, looked at once per round: the
+// difference is what the body may move in between.
+constexpr double kBoundSlack_m = 0.5;
+constexpr double kBoundMove_m = 0.25;
+constexpr double kSilence_s = 1.0;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 // The first round of all is drawn for this share of a round, so that on average a lone tag is read neither
 // early nor late: rounds come half a round late, and a slot is in the middle of its round.
@@ -27,7 +32,8 @@ SlotTagField::SlotTagField(const World& world, const TrueBody& body, std::vector
       slots_(slots),
       link_(world, std::move(antennas), air, seed),
       flags_(world.tags.size(), air, hal::Random::stream(seed, 2).next()),
-      candidates_(world.tags.size()),
+      nearby_(world, link_, air),
+      powered_(world.tags.size()),
       schedule_(air, hal::Random::stream(seed, 3).next()),
       round_(world.tags.size()),
       random_(hal::Random::stream(seed, 4)),
@@ -61,8 +67,8 @@ void SlotTagField::radio_on(const RadioSettings& settings, hal::Instant now) {
   silence_us_ = times_.empty_us - times_.query_rep_us;
   idle_round_s_ = idle_round_s(slots_, settings_.q);
   listened_s_.assign(settings_.ports.size(), kFirstShare * idle_round_s_);
-  candidates_.forget();
-  power_watch_.forget();
+  nearby_at_.reset();
+  powered_.forget();
   schedule_.start(settings_, now_s);
   first_round_ = true;
   next_s_ = now_s;
@@ -73,7 +79,7 @@ void SlotTagField::radio_off(hal::Instant now) {
   if (!on_) return;
   on_ = false;
   heard_.reset();
-  PowerWatch::all_off(seconds(now), world_->tags.size(), flags_);
+  powered_.all_off(seconds(now), flags_);
 }
 
 void SlotTagField::advance(hal::Instant now, std::vector<AirRead>& out) {
@@ -103,10 +109,9 @@ void SlotTagField::raise_carrier() {
     ++statistics_.dwells;
     frequency_khz_ = dwell.frequency_khz;
   }
-  const hal::Pose pose = track_.at(next_s_);
-  candidates_.refresh_if_moved(link_, world_->tags.size(), pose.position, max_reach_);
+  look_around(next_s_);
   if (flags_.needs_power_watch())
-    power_watch_.update(next_s_, pose, link_, settings_.ports, world_->tags.size(), flags_);
+    powered_.update(next_s_, track_.at(next_s_), max_reach_, link_, nearby_, settings_.ports, flags_);
   next_hop_s_ = slots_.hop_interval_s > 0.0 ? next_s_ + slots_.hop_interval_s : kNever;
   next_s_ += air_.settle_s;
   phase_ = Phase::round;
@@ -142,13 +147,29 @@ void SlotTagField::begin_round() {
     return drop_carrier();
   }
   ++statistics_.rounds;
-  candidates_.refresh_if_moved(link_, world_->tags.size(), track_.at(t_s).position, max_reach_);
+  look_around(t_s);
   offered_s_ = std::exchange(listened(), 0.0);
   draw_participants(offered_s_);
   begin_frames(settings_.target == 'B');
   listened() += slots_.round_overhead_s;
   next_s_ += slots_.round_overhead_s;
   phase_ = Phase::slot;
+}
+
+void SlotTagField::look_around(double t_s) {
+  const hal::Vec3 position = track_.at(t_s).position;
+  if (nearby_at_ && norm(position - *nearby_at_) < kBoundMove_m && t_s < silent_until_s_) return;
+  nearby_at_ = position;
+  const double silence_s = std::min(kSilence_s, air_.s2_persistence_min_s);
+  const bool silences = air_.skip_silent && settings_.session > 0 && settings_.target != '*';
+  const NearbyTags::Silence silence{.flags = &flags_,
+                                    .session = settings_.session,
+                                    .target = settings_.target,
+                                    .dwell = carrier_,
+                                    .now_s = t_s,
+                                    .until_s = t_s + silence_s};
+  nearby_.renew({position, kBoundSlack_m, max_reach_}, silences ? &silence : nullptr);
+  silent_until_s_ = nearby_.silent() > 0 ? t_s + silence_s : kNever;
 }
 
 void SlotTagField::begin_frames(bool b) {
@@ -184,6 +205,7 @@ bool SlotTagField::cut_off(double command_s, double slot_s) {
 
 void SlotTagField::count_heard() {
   if (!heard_) return;
+  if (settings_.session >= 2) powered_.singulated(heard_->tag);
   flags_.set(heard_->tag, settings_.session, heard_->to_b, next_s_, carrier_);
   heard_.reset();
 }

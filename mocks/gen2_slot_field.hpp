@@ -12,8 +12,8 @@
 #include "mocks/gen2_field_dwell.hpp"
 #include "mocks/gen2_field_flags.hpp"
 #include "mocks/gen2_field_link.hpp"
-#include "mocks/gen2_power_watch.hpp"
-#include "mocks/gen2_slot_candidates.hpp"
+#include "mocks/gen2_field_nearby.hpp"
+#include "mocks/gen2_field_power.hpp"
 #include "mocks/gen2_slot_parameters.hpp"
 #include "mocks/gen2_slot_round.hpp"
 #include "mocks/tag_field.hpp"
@@ -57,11 +57,13 @@ struct SlotStatistics {
 //
 // The cost follows the slots and replies: participants are drawn by thinning under bounds that hold around
 // the place they were computed for, and slots one by one from their binomial law. There is no tick; at rest
-// the reads do not depend on when advance() is called.
+// the reads do not depend on when advance() is called. The switches skip_* of AirParameters hold here too,
+// but for skip_blind_antennas and unchanged_m: a round takes place anyway, and poses are renewed every 5 ms.
 //
 // Not modelled: Select commands, access, readers that disturb each other, noise taken for a reply, T1 and BLF
 // within their tolerances (nominal).
-// world (fixed) and body must outlive the field. Allocates at construction and in radio_on() only.
+// world (fixed) and body must outlive the field. Once it has been in the densest part of the world it
+// allocates in radio_on() only.
 class SlotTagField final : public TagField {
  public:
   // Parameters must have passed validate().
@@ -95,12 +97,13 @@ class SlotTagField final : public TagField {
   void draw_participants(double listened_s);
   void join(std::uint32_t tag, bool heard);
   void draw_each(double listened_s);
-  void draw_thinned(double listened_s);
+  void draw_thinned(const Audible& audible, double listened_s);
+  void look_around(double t_s);
   struct Chances {
     double rate_per_s;  // of being heard
     double understood;  // chance that a reply is
   };
-  [[nodiscard]] Chances chances(const SlotCandidates::Candidate& candidate);
+  [[nodiscard]] Chances chances(const NearbyTags::Candidate& candidate);
   void begin_frames(bool b);
   void close_slot(std::vector<AirRead>& out);
   void run_slot();
@@ -120,8 +123,10 @@ class SlotTagField final : public TagField {
   SlotParameters slots_;
   AirLink link_;
   SessionFlags flags_;
-  PowerWatch power_watch_;
-  SlotCandidates candidates_;
+  NearbyTags nearby_;
+  std::optional<hal::Vec3> nearby_at_;
+  double silent_until_s_ = 0.0;  // tags that nearby_ left out as silent are so until then
+  PoweredTags powered_;
   DwellSchedule schedule_;
   SlotRound round_;
   hal::Random random_;

@@ -15,7 +15,7 @@ constexpr double kMicro = 1e-6;
 
 }  // namespace
 
-SlotTagField::Chances SlotTagField::chances(const SlotCandidates::Candidate& candidate) {
+SlotTagField::Chances SlotTagField::chances(const NearbyTags::Candidate& candidate) {
   const TagLink link = link_.link(view_, candidate.tag);
   const double rate = link_.hazard(link);
   if (rate > candidate.bound_per_s) ++statistics_.bound_exceeded;
@@ -43,11 +43,12 @@ void SlotTagField::join(std::uint32_t tag, bool heard) {
 void SlotTagField::draw_participants(double listened_s) {
   round_.clear();
   others_.clear();
-  if (candidates_.all().empty()) return;
-  (void)view_at(next_s_);
-  const double draws = candidates_.sum_per_s() / kLeastUnderstood * listened_s;
-  if (draws < static_cast<double>(candidates_.all().size())) {
-    draw_thinned(listened_s);
+  const AntennaView& view = view_at(next_s_);
+  const Audible audible = air_.skip_behind ? nearby_.before(view, 0.0) : nearby_.everything();
+  if (!view.fitted || audible.total_per_s <= 0.0) return;
+  const double draws = audible.total_per_s / kLeastUnderstood * listened_s;
+  if (draws < static_cast<double>(nearby_.all().size())) {
+    draw_thinned(audible, listened_s);
   } else {
     draw_each(listened_s);
   }
@@ -55,12 +56,12 @@ void SlotTagField::draw_participants(double listened_s) {
 
 // A Poisson process under the bounds, each of its points kept with true rate / bound: a tag is met at least
 // once with chance 1 - exp(-rate L).
-void SlotTagField::draw_thinned(double listened_s) {
-  const double rate_per_s = candidates_.sum_per_s() / kLeastUnderstood;
+void SlotTagField::draw_thinned(const Audible& audible, double listened_s) {
+  const double rate_per_s = audible.total_per_s / kLeastUnderstood;
   for (double at_s = random_.exponential() / rate_per_s; at_s < listened_s;
        at_s += random_.exponential() / rate_per_s) {
     ++statistics_.draws;
-    const SlotCandidates::Candidate& candidate = candidates_.pick(random_);
+    const NearbyTags::Candidate& candidate = nearby_.pick(audible, random_.uniform());
     const double keep_below = random_.uniform() * candidate.bound_per_s / kLeastUnderstood;
     if (settings_.target != '*' &&
         flags_.is_b(candidate.tag, settings_.session, next_s_, carrier_) != (settings_.target == 'B'))
@@ -72,7 +73,7 @@ void SlotTagField::draw_thinned(double listened_s) {
 
 // The same law tag by tag, cheaper when nearly every tag takes part.
 void SlotTagField::draw_each(double listened_s) {
-  for (const SlotCandidates::Candidate& candidate : candidates_.all()) {
+  for (const NearbyTags::Candidate& candidate : nearby_.all()) {
     ++statistics_.draws;
     if (settings_.target != '*' &&
         flags_.is_b(candidate.tag, settings_.session, next_s_, carrier_) != (settings_.target == 'B'))
