@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mocks/detection_scalar.hpp"
+#include "mocks/lane_beam.hpp"
+
 namespace forager::mocks {
 namespace {
 
@@ -40,6 +43,20 @@ hal::Result<> check_cut(const std::vector<PatternSample>& cut, const char* name)
 
 }  // namespace
 
+struct PatternSeries {
+  LaneBeam<double> f64;
+  LaneBeam<float> f32;
+  double scale;  // of the amplitude, to be 1 on boresight
+
+  explicit PatternSeries(const AntennaPattern::Beam& beam)
+      : PatternSeries(beam.shape == AntennaPattern::Shape::cosine_squared, beam.width_h_rad,
+                      beam.width_v_rad) {}
+  PatternSeries(bool cosine, double width_h_rad, double width_v_rad)
+      : f64(make_lane_beam<double>(cosine, width_h_rad, width_v_rad)),
+        f32(make_lane_beam<float>(cosine, width_h_rad, width_v_rad)),
+        scale(1.0 / left_out_of_amplitude(cosine, width_h_rad, width_v_rad)) {}
+};
+
 AntennaPattern AntennaPattern::cosine_squared(double width_h_rad, double width_v_rad) {
   return AntennaPattern(Beam{Shape::cosine_squared, width_h_rad, width_v_rad});
 }
@@ -55,9 +72,31 @@ hal::Result<AntennaPattern> AntennaPattern::table(std::vector<PatternSample> azi
   return AntennaPattern(Table{std::move(azimuth), std::move(elevation)});
 }
 
+AntennaPattern::AntennaPattern(Beam beam) : form_(beam), series_(std::make_shared<PatternSeries>(beam)) {}
+
+AntennaPattern AntennaPattern::with(PatternArithmetic arithmetic) const {
+  AntennaPattern other = *this;
+  other.arithmetic_ = arithmetic;
+  return other;
+}
+
 double AntennaPattern::power(hal::Vec3 point) const {
   const Beam* const beam = std::get_if<Beam>(&form_);
-  return beam != nullptr ? beam_power(*beam, point) : table_power(*std::get_if<Table>(&form_), point);
+  if (beam == nullptr) return table_power(*std::get_if<Table>(&form_), point);
+  return arithmetic_ == PatternArithmetic::trigonometry ? trigonometric_power(*beam, point)
+                                                        : series_power(*beam, point);
+}
+
+double AntennaPattern::series_power(const Beam& beam, hal::Vec3 point) const {
+  const auto amplitude = [&]<class T>(const LaneBeam<T>& lanes, double scale) {
+    const auto x = static_cast<T>(point.x), y = static_cast<T>(point.y), z = static_cast<T>(point.z);
+    if (!(x > T(0))) return 0.0;
+    if (needs_exact(lanes, x, y, z)) return std::sqrt(trigonometric_power(beam, point));
+    return static_cast<double>(pattern_amplitude(lanes, x, y, z)) * scale;
+  };
+  return std::min(
+      1.0, squared(arithmetic_ == PatternArithmetic::series_f32 ? amplitude(series_->f32, series_->scale)
+                                                                : amplitude(series_->f64, series_->scale)));
 }
 
 std::optional<AntennaPattern::Beam> AntennaPattern::beam() const {
@@ -65,7 +104,7 @@ std::optional<AntennaPattern::Beam> AntennaPattern::beam() const {
   return beam != nullptr ? std::optional(*beam) : std::nullopt;
 }
 
-double AntennaPattern::beam_power(const Beam& beam, hal::Vec3 point) {
+double AntennaPattern::trigonometric_power(const Beam& beam, hal::Vec3 point) {
   // Written so that NaN falls on the side of 0.
   if (!(point.x > 0.0) || !usable_width(beam.width_h_rad) || !usable_width(beam.width_v_rad)) return 0.0;
   const double azimuth = std::atan2(point.y, point.x);

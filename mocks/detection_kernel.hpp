@@ -58,13 +58,14 @@ class DetectionKernel {
 
  private:
   template <class T>
-  [[nodiscard]] LaneBeam<T> make_beam(double tolerance) const;
+  [[nodiscard]] LaneBeam<T> make_beam() const;
   template <class T>
   void run(const LaneBeam<T>& beam, std::span<const T> x, std::span<const T> y, std::span<const T> z,
            std::span<T> results, std::span<const T> r0_factor) const;
   void point_to_myself();
 
   DetectionSettings settings_;
+  AntennaPattern exact_pattern_;
   double farthest_r0_ = 0.0;
   bool tabulated_ = false;
   LaneBeam<double> beam_;

@@ -61,6 +61,24 @@ template <class T>
   return depth <= kDeepest<T> ? exp2_of_minus(depth > T(0) ? depth : T(0)) : T(0);
 }
 
+// The same towards a point before the antenna whose squares are normal numbers, in its geometry or the
+// plugin's.
+template <class T>
+[[nodiscard]] T pattern_amplitude(const LaneBeam<T>& beam, T x, T y, T z, T planar, T range) {
+  const bool published = beam.formula == DetectionFormula::plugin_as_published;
+  const T w_v = published ? half_tangent_squared(x, z, std::sqrt(x * x + z * z), beam.null_v.wide)
+                          : half_tangent_squared(planar, z, range, beam.null_v.wide);
+  return beam_amplitude(beam, half_tangent_squared(x, y, planar, beam.null_h.wide), w_v);
+}
+
+template <class T>
+[[nodiscard]] T pattern_amplitude(const LaneBeam<T>& beam, T x, T y, T z) {
+  const T planar_squared = x * x + y * y;
+  const T range = std::sqrt(planar_squared + z * z);
+  if (beam.form == BeamForm::algebraic) return x / range;
+  return pattern_amplitude(beam, x, y, z, std::sqrt(planar_squared), range);
+}
+
 // Whether squares of the coordinates leave the range of normal numbers.
 template <class T>
 [[nodiscard]] bool needs_exact(const LaneBeam<T>& beam, T x, T y, T z) {
@@ -92,9 +110,7 @@ template <class T>
   } else {
     const T planar = std::sqrt(planar_squared);
     range = std::sqrt(range_squared);
-    const T w_v = published ? half_tangent_squared(x, z, std::sqrt(x * x + z * z), beam.null_v.wide)
-                            : half_tangent_squared(planar, z, range, beam.null_v.wide);
-    const T amplitude = beam_amplitude(beam, half_tangent_squared(x, y, planar, beam.null_h.wide), w_v);
+    const T amplitude = pattern_amplitude(beam, x, y, z, planar, range);
     if (!(amplitude > T(0))) return T(0);
     if (published) range = planar;
     reach *= beam.formula == DetectionFormula::paper ? amplitude : amplitude * amplitude;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hal/random.hpp"
+
 namespace forager::mocks {
 namespace {
 
@@ -38,14 +40,37 @@ TEST(AntennaPattern, IsExactlyZeroBeyondItsNullAndBehind) {
   EXPECT_LT(pattern.power(direction(69.999, 0.0)), 1e-8);
 }
 
+// Without trigonometry, against libm: all forms, all the way to the null.
+TEST(AntennaPattern, SeriesGiveThePowerOfTheFormula) {
+  hal::Random random(4);
+  for (const double width : {2.0, 30.0, 70.0, 90.0, 100.0, 150.0, 180.0})
+    for (const bool cosine : {true, false}) {
+      const double w = deg_to_rad(width);
+      const AntennaPattern fast =
+          cosine ? AntennaPattern::cosine_squared(w, 0.7 * w) : AntennaPattern::gaussian(w, w);
+      const AntennaPattern exact = fast.with(PatternArithmetic::trigonometry);
+      const AntennaPattern f32 = fast.with(PatternArithmetic::series_f32);
+      double off = 0.0, off_f32 = 0.0;
+      for (int i = 0; i < 3000; ++i) {
+        const Vec3 p = direction(random.uniform(-1.2, 1.2) * width, random.uniform(-1.2, 1.2) * width);
+        off = std::max(off, std::abs(fast.power(p) - exact.power(p)));
+        off_f32 = std::max(off_f32, std::abs(f32.power(p) - exact.power(p)));
+      }
+      EXPECT_LE(off, 2e-15) << width << cosine;
+      EXPECT_LE(off_f32, 1e-6) << width << cosine;
+      EXPECT_GT(off_f32, 1e-9) << width << cosine;  // it really is single precision
+    }
+}
+
 TEST(AntennaPattern, NeverGivesNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   const auto table = AntennaPattern::table({{-1.0, 0.0}, {0.0, 1.0}, {1.0, 0.0}}, {{-1.0, 1.0}, {1.0, 1.0}});
   ASSERT_TRUE(table);
-  for (const auto& pattern :
-       {AntennaPattern(), AntennaPattern::gaussian(1.2, 1.2), *table,
-        AntennaPattern::cosine_squared(0.0, -1.0), AntennaPattern::gaussian(nan, 1.0)}) {
+  for (const auto& pattern : {AntennaPattern(), AntennaPattern::gaussian(1.2, 1.2), *table,
+                              AntennaPattern::cosine_squared(0.0, -1.0), AntennaPattern::gaussian(nan, 1.0),
+                              AntennaPattern().with(PatternArithmetic::trigonometry),
+                              AntennaPattern().with(PatternArithmetic::series_f32)}) {
     for (const double x : {0.0, -0.0, 1e-300, 1.0, inf, -inf, nan})
       for (const double y : {0.0, -0.0, 1e-300, 1.0, inf, -inf, nan})
         for (const double z : {0.0, 1e300, 1.0, inf, nan}) {
