@@ -30,7 +30,9 @@ if(FORAGER_SANITIZE)
     -fno-sanitize-recover=all)
   target_link_options(forager_flags INTERFACE -fsanitize=${FORAGER_SANITIZE})
 endif()
-if(FORAGER_FUZZ)
+# What fuzzers need to see where they have been. Tests under the address sanitizer get it too, so that both presets
+# share every object.
+if(FORAGER_FUZZ OR (FORAGER_SANITIZE MATCHES address AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang"))
   target_compile_options(forager_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
