@@ -42,6 +42,7 @@ DriveLoop::DriveLoop(const DriveConfig& config, const DriveDevices& devices, Dri
       autopilot_(&devices.autopilot),
       pose_(&devices.pose),
       journal_(&devices.journal),
+      alive_(devices.alive),
       stop_button_(devices.stop_button),
       depth_(devices.depth),
       mission_(std::move(mission)),
@@ -56,6 +57,8 @@ DriveLoop::DriveLoop(const DriveConfig& config, const DriveDevices& devices, Dri
 
 // pose -> steps -> brakes and thrust, with the safety core between the last two.
 void DriveLoop::update(hal::Instant now) {
+  alive_level_ = !alive_level_;
+  if (alive_ != nullptr) static_cast<void>(alive_->set(alive_level_));  // a dead line ends in locked brakes
   if (done()) {
     brakes_.update(now);
     return;

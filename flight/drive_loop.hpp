@@ -14,6 +14,7 @@
 #include "flight/vision_filter.hpp"
 #include "hal/depth_source.hpp"
 #include "hal/digital_in.hpp"
+#include "hal/digital_out.hpp"
 #include "hal/halt.hpp"
 #include "hal/journal.hpp"
 #include "hal/pose_source.hpp"
@@ -30,6 +31,9 @@ struct DriveDevices {
   servo::BrakeActuator& left_brake;
   servo::BrakeActuator& right_brake;
   hal::Journal& journal;
+  // Changes its level at every update: whoever keeps the brakes when this program is gone (a watchdog relay,
+  // a servo board of its own) locks them when it stops. Without one, a crash leaves the brakes as they were.
+  hal::DigitalOut* alive = nullptr;
   hal::DigitalIn* stop_button = nullptr;  // active: pressed, or its wire is broken (board file's polarity)
   hal::DepthSource* depth = nullptr;      // with it, the way ahead is watched
 };
@@ -150,6 +154,7 @@ class DriveLoop final : public hal::Halt {
   DriveAutopilot* autopilot_;
   hal::PoseSource* pose_;
   hal::Journal* journal_;
+  hal::DigitalOut* alive_;
   hal::DigitalIn* stop_button_;
   hal::DepthSource* depth_;
   DriveMission mission_;
@@ -165,6 +170,7 @@ class DriveLoop final : public hal::Halt {
   hal::Instant go_until_{hal::Duration::min()};
   hal::Instant last_pose_{hal::Duration::min()};  // stamp of the newest given to the controller
   servo::SteerPhase noted_ = servo::SteerPhase::idle;
+  bool alive_level_ = false;
   bool button_failed_ = false;
   bool button_pressed_ = false;
   bool halt_asked_ = false;

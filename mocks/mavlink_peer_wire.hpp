@@ -29,6 +29,7 @@ inline constexpr MessageKind kGpsGlobalOrigin{49, 39, 12, 20};
 inline constexpr MessageKind kCommandInt{75, 158, 35, 35};
 inline constexpr MessageKind kCommandLong{76, 152, 33, 33};
 inline constexpr MessageKind kCommandAck{77, 143, 3, 10};
+inline constexpr MessageKind kSetAttitudeTarget{82, 49, 39, 51};
 inline constexpr MessageKind kSetPositionTargetLocalNed{84, 143, 53, 53};
 inline constexpr MessageKind kVisionPositionEstimate{102, 158, 32, 117};
 inline constexpr MessageKind kSimState{108, 32, 84, 92};
@@ -56,6 +57,7 @@ inline constexpr std::array kKnown{kHeartbeat,
                                    kCommandInt,
                                    kCommandLong,
                                    kCommandAck,
+                                   kSetAttitudeTarget,
                                    kSetPositionTargetLocalNed,
                                    kVisionPositionEstimate,
                                    kSimState,

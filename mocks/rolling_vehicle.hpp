@@ -41,6 +41,15 @@ class RollingVehicle final : public TrueBody {
   explicit RollingVehicle(const RollingParameters& parameters, hal::Pose start = {});
 
   void command(const RollingCommand& command) { command_ = command; }
+  // The same in two halves: what the autopilot does, and what the brakes' outputs do.
+  void push(double thrust, double pitch_rad) {
+    command_.thrust = thrust;
+    command_.pitch_rad = pitch_rad;
+  }
+  void press(double left, double right) {
+    command_.brake_left = left;
+    command_.brake_right = right;
+  }
   // Runs whole steps up to `now`. The first call only sets the clock.
   void update(hal::Instant now);
   // One step of parameters().step.

@@ -51,9 +51,13 @@ void SimAutopilot::update(hal::Instant now) {
 void SimAutopilot::step() {
   clock_ += config_.step;
   apply_faults();
-  vehicle_.command(flight_command());
-  vehicle_.update(config_.step, clock_);
-  estimator_.propagate(vehicle_.state(), hal::to_seconds(config_.step), faults_.yaw_drift_rad_s, clock_);
+  if (wheels_ != nullptr) {
+    roll();
+  } else {
+    vehicle_.command(flight_command());
+    vehicle_.update(config_.step, clock_);
+  }
+  estimator_.propagate(state(), hal::to_seconds(config_.step), faults_.yaw_drift_rad_s, clock_);
   watch_ground();
   watch_estimator();
   send_streams();

@@ -9,6 +9,7 @@
 #include "hal/journal.hpp"
 #include "hal/time.hpp"
 #include "mocks/body.hpp"
+#include "mocks/rolling_vehicle.hpp"
 #include "mocks/sim_autopilot_config.hpp"
 #include "mocks/sim_autopilot_estimator.hpp"
 #include "mocks/sim_autopilot_link.hpp"
@@ -35,7 +36,17 @@ class SimAutopilot : public TrueBody {
   void attach(const World* world, hal::Journal* journal, bool wire = false);
   void update(hal::Instant now);
 
-  [[nodiscard]] const BodyState& state() const override { return vehicle_.state(); }
+  // Puts the autopilot onto a vehicle that stands on wheels: attitude and thrust targets push it, its state
+  // is the body's. The vehicle must outlive it; null takes it off again.
+  void put_on_wheels(RollingVehicle* wheels) { wheels_ = wheels; }
+  // Passes on a ground station's command to a companion computer: disarm, that is stop.
+  void relay_stop(std::uint8_t system, std::uint8_t component);
+  [[nodiscard]] double wheel_thrust() const { return armed_ ? attitude_.thrust : 0.0; }
+  [[nodiscard]] double wheel_pitch_rad() const { return attitude_.pitch_rad; }
+
+  [[nodiscard]] const BodyState& state() const override {
+    return wheels_ != nullptr ? wheels_->state() : vehicle_.state();
+  }
   [[nodiscard]] const Vehicle& vehicle() const { return vehicle_; }
   [[nodiscard]] const SimEstimator& estimator() const { return estimator_; }
   [[nodiscard]] peer::CopterMode mode() const { return mode_; }
@@ -86,6 +97,10 @@ class SimAutopilot : public TrueBody {
   [[nodiscard]] std::string_view arming_obstacle() const;
   [[nodiscard]] bool in_flight() const { return armed_ && !landed_; }
 
+  // sim_autopilot_wheels.cpp: on wheels
+  void hear_attitude(const MavlinkPayload& message);
+  void roll();
+
   // sim_autopilot_commands.cpp: what it is told
   void hear(const MavlinkPeerFrame& frame);
   void hear_command(const MavlinkPeerFrame& frame);
@@ -134,6 +149,14 @@ class SimAutopilot : public TrueBody {
   SimAutopilotLink link_;
   Vehicle vehicle_;
   SimEstimator estimator_;
+  RollingVehicle* wheels_ = nullptr;
+  struct AttitudeTarget {
+    double pitch_rad = 0.0;  // nose down positive
+    double thrust = 0.0;     // 0..1
+    hal::Instant heard;
+    bool fresh = false;
+  };
+  AttitudeTarget attitude_;
   hal::Journal* journal_ = nullptr;
 
   bool started_ = false;

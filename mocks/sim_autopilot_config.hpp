@@ -36,6 +36,7 @@ struct SimAutopilotConfig {
 
   double loop_rate_hz = 400.0;                              // SCHED_LOOP_RATE
   hal::Duration guided_timeout = std::chrono::seconds(3);   // GUID_TIMEOUT
+  bool guided_thrust = false;                               // GUID_OPTIONS bit 3: thrust is thrust
   hal::Duration disarm_delay = std::chrono::seconds(10);    // DISARM_DELAY
   hal::Duration spool_up = std::chrono::milliseconds(500);  // MOT_SPOOL_TIME
   hal::Duration landed_after = std::chrono::seconds(1);     // land detector

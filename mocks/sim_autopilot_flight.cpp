@@ -50,7 +50,7 @@ VehicleCommand SimAutopilot::flight_command() {
 void SimAutopilot::aim(VehicleCommand& command, Vec3 position_ned_m) const {
   const Vec3 way = estimator_.to_world(position_ned_m - estimator_.estimate().position_m);
   command.horizontal = command.vertical = VehicleCommand::Follow::position;
-  command.position_world = vehicle_.state().pose.position + way;
+  command.position_world = state().pose.position + way;
   command.velocity_world_m_s = estimator_.to_world(-1.0 * estimator_.velocity_error_ned());
 }
 
@@ -144,11 +144,11 @@ void SimAutopilot::steer(VehicleCommand& command) {
   command.yaw_rate_rad_s = -target_.yaw_rate_rad_s;
   // Clockwise in its own estimate is clockwise of the body.
   const double way = hal::angle_difference(target_.yaw_rad, estimator_.estimate().yaw_rad);
-  command.yaw_rad = hal::wrap_pi(vehicle_.state().pose.yaw_rad - way);
+  command.yaw_rad = hal::wrap_pi(state().pose.yaw_rad - way);
 }
 
 void SimAutopilot::watch_ground() {
-  if (!vehicle_.state().on_ground) {
+  if (!state().on_ground) {
     touched_at_.reset();
     landed_ = false;
     return;

@@ -55,6 +55,8 @@ void SimAutopilot::hear(const MavlinkPeerFrame& frame) {
     }
     case peer::kSetPositionTargetLocalNed.id:
       return hear_setpoint(m);
+    case peer::kSetAttitudeTarget.id:
+      return hear_attitude(m);
     case peer::kVisionPositionEstimate.id:
       return hear_vision({{m.f32(8), m.f32(12), m.f32(16)}, m.f32(28), m.get<std::uint8_t>(116)});
     case peer::kOdometry.id:

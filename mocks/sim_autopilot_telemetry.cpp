@@ -166,7 +166,7 @@ void SimAutopilot::fill_battery(MavlinkPayload& p) const {
 
 // Forward, right, down: pitch and yaw change their sign against REP-103.
 void SimAutopilot::fill_attitude(MavlinkPayload& p) const {
-  const BodyState& body = vehicle_.state();
+  const BodyState& body = state();
   p.put(0, boot_ms());
   p.f32(4, body.pose.roll_rad);
   p.f32(8, -body.pose.pitch_rad);
@@ -205,7 +205,7 @@ void SimAutopilot::fill_global_position(MavlinkPayload& p) const {
 
 // The truth, unlike all others: the world's axes with y and z turned round, 1e-7 degrees left at zero.
 void SimAutopilot::fill_sim_state(MavlinkPayload& p) const {
-  const BodyState& body = vehicle_.state();
+  const BodyState& body = state();
   const hal::Vec3 acceleration = vehicle_.acceleration_world_m_s2();
   const double half = -0.5 * body.pose.yaw_rad;
   p.f32(0, std::cos(half));
