@@ -69,6 +69,7 @@ hal::Result<Board> load_board(const std::string& name_or_path) {
   board.autopilot = read_endpoint(autopilot, "address", board.autopilot);
   ConfigReader world = top.table("world");
   board.truth = read_endpoint(world, "truth", board.truth);
+  board.brakes = read_brake_board(top.table("brakes"));
   board.esc = read_esc_board(top.table("esc"));
   check_unused(*root, issue);
   if (issue) return hal::fail(std::move(*issue));

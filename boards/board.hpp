@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "boards/brake_board.hpp"
 #include "boards/config_node.hpp"
 #include "boards/esc_board.hpp"
 #include "hal/error.hpp"
@@ -42,6 +43,7 @@ struct Board {
   Endpoint autopilot{"127.0.0.1", 14550};
   Endpoint truth{"127.0.0.1", 14571};  // where the emulated autopilot's truth feed is received
 
+  BrakeBoard brakes;
   EscBoard esc;  // lines of the bench; a mission never uses them
 };
 
