@@ -23,6 +23,9 @@ constexpr double kTurnSlack_rad = 0.1;
 constexpr double kTurnMove_rad = 0.05;
 // Silent tags are left out for this long; shorter than S2 and S3 flags outlast power.
 constexpr double kSilence_s = 1.0;
+// A look at a tag costs about an eighth of a draw in vain.
+constexpr std::size_t kLooksPerDraw = 8;
+constexpr std::size_t kFewDraws = 64;
 
 double distance2(hal::Vec3 a, hal::Vec3 b) {
   const hal::Vec3 d = a - b;
@@ -140,6 +143,8 @@ void SimTagField::draw(std::vector<AirRead>& out) {
       report(link, chosen.tag, t_s, out);
       free_s_ += air_.singulation_s;
     }
+  } else if (settings_.session > 0) {
+    ++silent_draws_;
   }
   schedule_draw();
 }
@@ -163,7 +168,8 @@ void SimTagField::report(const TagLink& link, std::uint32_t tag, double t_s, std
 bool SimTagField::look_around(double t_s) {
   const hal::Pose pose = track_.at(t_s);
   const bool moved = !nearby_at_ || distance2(pose.position, *nearby_at_) >= kBoundMove_m * kBoundMove_m;
-  if (moved || t_s >= silent_until_s_) renew_nearby(t_s, pose.position);
+  const bool worth = air_.skip_silent && silent_draws_ > kFewDraws + nearby_.examined() / kLooksPerDraw;
+  if (moved || worth || t_s >= silent_until_s_) renew_nearby(t_s, pose.position);
   Ear& ear = this->ear();
   if (t_s - ear.at_s >= kPoseAge_s || !ear.known) renew_view(t_s, pose);
   if (ear.audible_generation == nearby_.generation() &&
@@ -189,6 +195,7 @@ void SimTagField::renew_nearby(double t_s, hal::Vec3 position) {
                                     .now_s = t_s,
                                     .until_s = t_s + silence_s};
   nearby_.renew({position, kBoundSlack_m, max_reach_}, silences ? &silence : nullptr);
+  silent_draws_ = 0;
   silent_until_s_ = nearby_.silent() > 0 ? t_s + silence_s : kNever;
   ++statistics_.renewals;
   statistics_.examined += nearby_.examined();

@@ -104,7 +104,8 @@ class SimTagField final : public TagField {
 
   NearbyTags nearby_;
   std::optional<hal::Vec3> nearby_at_;
-  double silent_until_s_ = 0.0;  // tags that nearby_ left out as silent are so until then
+  double silent_until_s_ = 0.0;   // tags that nearby_ left out as silent are so until then
+  std::size_t silent_draws_ = 0;  // since the last renewal
   double max_reach_ = 1.0;
   std::vector<Ear> ears_;  // by port index
   PoweredTags powered_;

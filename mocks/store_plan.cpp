@@ -20,7 +20,7 @@ constexpr double kLargest_m = 1e5;
 // A shelf, and how many tags it holds beside others of its size.
 struct Shelf {
   Box box;
-  double fill = 1.0;
+  double share = 0.0;  // of floor and filling, from its place in the store: the same wherever that stands
 };
 
 class Builder {
@@ -46,12 +46,12 @@ class Builder {
   // Shares of floor and filling, rounded so that they add up.
   void fill(EpcSequence& epcs) {
     double whole = 0.0;
-    for (const Shelf& shelf : shelves_) whole += share(shelf);
+    for (const Shelf& shelf : shelves_) whole += shelf.share;
     world_->tags.reserve(world_->tags.size() + plan_.tags);
     double so_far = 0.0;
     std::size_t placed = 0;
     for (std::size_t i = 0; i < shelves_.size(); ++i) {
-      so_far += share(shelves_[i]);
+      so_far += shelves_[i].share;
       const bool last = i + 1 == shelves_.size();
       const double due = std::floor(static_cast<double>(plan_.tags) * so_far / whole);
       const std::size_t until = last ? plan_.tags : std::min(static_cast<std::size_t>(due), plan_.tags);
@@ -62,9 +62,6 @@ class Builder {
   static double area_of(const StorePlan& plan) { return static_cast<double>(plan.tags) / plan.tags_per_m2; }
 
  private:
-  [[nodiscard]] static double share(const Shelf& shelf) {
-    return shelf.fill * (shelf.box.max.x - shelf.box.min.x) * (shelf.box.max.y - shelf.box.min.y);
-  }
   [[nodiscard]] double half_aisle() const { return 0.5 * plan_.aisle_m; }
   [[nodiscard]] double pitch() const { return plan_.aisle_m + plan_.shelf_depth_m; }
 
@@ -84,7 +81,7 @@ class Builder {
     return box;
   }
   void shelf(double x0, double y0, double x1, double y1, double fill = 1.0) {
-    shelves_.push_back({stand(x0, y0, x1, y1), fill});
+    shelves_.push_back({stand(x0, y0, x1, y1), fill * std::abs((x1 - x0) * (y1 - y0))});
   }
 
   // About as long as wide; returns where it ends.
