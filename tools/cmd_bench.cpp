@@ -1,6 +1,8 @@
 #include "tools/cmd_bench.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -66,10 +68,14 @@ void add_accuracy_command(CLI::App& bench, int& exit_code) {
 }  // namespace
 
 int run_bench_speed(const BenchCommand& command) {
-  const auto scene = boards::load_scene(command.scene);
-  if (!scene) return complain(scene.error());
-  auto rows = bench_mission(*scene, command.repeats);
-  if (!rows) return complain(rows.error());
+  std::vector<BenchRow> rows;
+  for (const std::string& path : command.scenes) {
+    const auto scene = boards::load_scene(path);
+    if (!scene) return complain(scene.error());
+    auto flown = bench_mission(*scene, command.repeats);
+    if (!flown) return complain(flown.error());
+    std::move(flown->begin(), flown->end(), std::back_inserter(rows));
+  }
   DuelOptions options;
   options.repeats = command.repeats;
   for (const Duel& duel : hot_paths()) {
@@ -78,9 +84,9 @@ int run_bench_speed(const BenchCommand& command) {
       complain(row.error());
       return kExitCheckFailed;
     }
-    rows->push_back(std::move(*row));
+    rows.push_back(std::move(*row));
   }
-  return print(*rows, command.json);
+  return print(rows, command.json);
 }
 
 void add_bench_command(CLI::App& app, int& exit_code) {
@@ -89,7 +95,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   auto command = std::make_shared<BenchCommand>();
   CLI::App* speed = bench->add_subcommand(
       "speed", "How fast missions run and where their time goes; hot paths beside other ways to do the same");
-  speed->add_option("--scene", command->scene, "Mission to fly, every device emulated")
+  speed->add_option("--scene", command->scenes, "Mission to fly, every device emulated; may be given again")
+      ->allow_extra_args(false)
       ->capture_default_str();
   speed->add_option("--repeat", command->repeats, "Measurements of each, of which the median counts")
       ->capture_default_str()

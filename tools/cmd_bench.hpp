@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -10,7 +11,8 @@ class App;
 namespace forager::tools {
 
 struct BenchCommand {
-  std::string scene = "scenes/4A.toml";
+  // A laboratory run, and stores of ten thousand and a million tags.
+  std::vector<std::string> scenes{"scenes/4A.toml", "scenes/store-1e4.toml", "scenes/store-1e6.toml"};
   int repeats = 9;
   bool json = false;
 };
