@@ -9,6 +9,7 @@
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/cmd_bench.hpp"
+#include "tools/cmd_calibrate.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_esc.hpp"
 #include "tools/cmd_report.hpp"
@@ -45,6 +46,7 @@ int run_command(int argc, char** argv) {
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
   add_reproduce_command(app, exit_code);
+  add_calibrate_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,231 @@
+#include "boards/calibration_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "boards/reproduce.hpp"
+#include "boards/sim_air.hpp"
+#include "hal/units.hpp"
+#include "mocks/antenna_pattern.hpp"
+
+namespace forager::boards {
+namespace {
+
+// Beyond this many times the 95 % point of what was heard nothing is looked at: nobody hears anything there,
+// and saying so tells nothing.
+constexpr double kFarShare = 1.4;
+
+struct Slice {
+  std::size_t stop = 0;
+  std::vector<double> listen_s;  // by port
+};
+
+// Where the vehicle stayed about the same for some slices.
+struct Stop {
+  hal::Pose pose;
+  std::size_t cell = 0;  // stops of one cell share their fade
+};
+
+class Slicer {
+ public:
+  Slicer(const Recording& recording, const Scene& scene, const CalibrationSlicing& slicing)
+      : recording_(recording), slicing_(slicing), air_(air_of(scene)) {
+    for (const reader::ReadPort& port : scene.read_plan.ports) {
+      ports_.push_back(port.port);
+      bearings_.push_back(port.bearing_rad);
+    }
+    const double length_s = recording.poses.back().time_s - recording.poses.front().time_s;
+    slices_.resize(std::max<std::size_t>(1, static_cast<std::size_t>(length_s / slicing.slice_s)));
+  }
+
+  CalibrationCells cut() {
+    find_stops();
+    share_time();
+    mark_seen();
+    CalibrationCells cells;
+    cells.tag_begin.push_back(0);
+    for (std::size_t tag = 0; tag < recording_.tags.size(); ++tag) append_tag(cells, tag);
+    cells.cell_begin.push_back(cells.bins.size());
+    finish(cells);
+    return cells;
+  }
+
+ private:
+  [[nodiscard]] double start_s() const { return recording_.poses.front().time_s; }
+  [[nodiscard]] std::size_t slice_at(double time_s) const {
+    const double place = (time_s - start_s()) / slicing_.slice_s;
+    return place < 0.0 ? slices_.size() : static_cast<std::size_t>(std::min(place, 1e12));
+  }
+  [[nodiscard]] std::size_t port_place(int port) const {
+    return static_cast<std::size_t>(std::find(ports_.begin(), ports_.end(), port) - ports_.begin());
+  }
+
+  [[nodiscard]] hal::Pose pose_at(double time_s) const {
+    const auto& poses = recording_.poses;
+    const auto after = std::lower_bound(poses.begin(), poses.end(), time_s,
+                                        [](const auto& p, double t) { return p.time_s < t; });
+    if (after == poses.begin()) return poses.front().pose;
+    if (after == poses.end()) return poses.back().pose;
+    const auto& a = *(after - 1);
+    const double share = (time_s - a.time_s) / (after->time_s - a.time_s);
+    hal::Pose pose = a.pose;
+    pose.position = a.pose.position + share * (after->pose.position - a.pose.position);
+    pose.yaw_rad += share * hal::angle_difference(after->pose.yaw_rad, a.pose.yaw_rad);
+    return pose;
+  }
+
+  void find_stops() {
+    hal::Vec3 cell_at;
+    for (std::size_t i = 0; i < slices_.size(); ++i) {
+      const hal::Pose pose = pose_at(start_s() + (static_cast<double>(i) + 0.5) * slicing_.slice_s);
+      const bool first = stops_.empty();
+      if (first || norm(pose.position - stops_.back().pose.position) > slicing_.rest_m ||
+          std::abs(hal::angle_difference(pose.yaw_rad, stops_.back().pose.yaw_rad)) > slicing_.rest_rad) {
+        const bool elsewhere = first || norm(pose.position - cell_at) > slicing_.fade_length_m;
+        if (elsewhere) cell_at = pose.position;
+        const std::size_t cell = first ? 0 : stops_.back().cell + (elsewhere ? 1 : 0);
+        stops_.push_back({pose, cell});
+      }
+      slices_[i].stop = stops_.size() - 1;
+    }
+  }
+
+  // Bursts first, then even shares of what is left.
+  void share_time() {
+    for (Slice& slice : slices_) slice.listen_s.assign(ports_.size(), 0.0);
+    for (std::size_t i = 1; i < recording_.reads.size(); ++i) {
+      const auto& a = recording_.reads[i - 1];
+      const auto& b = recording_.reads[i];
+      const std::size_t slice = slice_at(a.time_s);
+      const std::size_t port = port_place(b.port);
+      if (a.port != b.port || b.time_s - a.time_s > slicing_.burst_gap_s) continue;
+      if (slice < slices_.size() && port < ports_.size())
+        slices_[slice].listen_s[port] += b.time_s - a.time_s;
+    }
+    // Each visit of a port begins with settling, and while one tag answers nobody else is heard.
+    const double visit_s =
+        air_.patience_median_s * std::exp(0.5 * air_.patience_log_sigma * air_.patience_log_sigma);
+    const double listening = visit_s / (visit_s + air_.settle_s);
+    for (Slice& slice : slices_) {
+      double busy_s = 0.0;
+      for (const double listen : slice.listen_s) busy_s += listen;
+      const double rest_s = std::max(0.0, slicing_.slice_s - busy_s) / static_cast<double>(ports_.size());
+      for (double& listen : slice.listen_s) listen += listening * rest_s;
+    }
+    for (const Recording::Read& read : recording_.reads) {
+      const std::size_t slice = slice_at(read.time_s);
+      const std::size_t port = port_place(read.port);
+      if (slice >= slices_.size() || port >= ports_.size()) continue;
+      double& listen = slices_[slice].listen_s[port];
+      listen = std::max(listen - air_.singulation_s, 0.1 * listen);
+    }
+  }
+
+  // Sorted keys of (tag, port, slice) in which something was heard.
+  void mark_seen() {
+    for (const Recording::Read& read : recording_.reads) {
+      const std::size_t slice = slice_at(read.time_s);
+      const std::size_t port = port_place(read.port);
+      if (slice >= slices_.size() || port >= ports_.size()) continue;
+      ++reads_;
+      seen_.push_back((std::uint64_t{read.tag} * ports_.size() + port) * slices_.size() + slice);
+    }
+    std::sort(seen_.begin(), seen_.end());
+    seen_.erase(std::unique(seen_.begin(), seen_.end()), seen_.end());
+    heard_m_.reserve(seen_.size());
+    for (const std::uint64_t key : seen_) {
+      const std::size_t slice = key % slices_.size();
+      const std::size_t port = key / slices_.size() % ports_.size();
+      const double range = range_m(key / slices_.size() / ports_.size(), port, slices_[slice].stop);
+      if (std::isfinite(range)) heard_m_.push_back(range);
+    }
+    far_m_ =
+        heard_m_.empty() ? std::numeric_limits<double>::infinity() : kFarShare * quantile(heard_m_, 0.95);
+  }
+
+  [[nodiscard]] double range_m(std::size_t tag, std::size_t port, std::size_t stop) const {
+    const hal::Pose& pose = stops_[stop].pose;
+    const hal::Vec3 offset = recording_.tags[tag].position - pose.position;
+    const double power = air_.pattern.power(hal::rotate_yaw(offset, -pose.yaw_rad - bearings_[port]));
+    if (power <= 0.0) return std::numeric_limits<double>::infinity();
+    return norm(offset) / std::pow(power, air_.pattern_exponent);
+  }
+
+  void append_tag(CalibrationCells& cells, std::size_t tag) {
+    for (std::size_t port = 0; port < ports_.size(); ++port) {
+      bool open = false;
+      std::size_t cell = 0;
+      std::size_t slice = 0;
+      while (slice < slices_.size()) {
+        const std::size_t stop = slices_[slice].stop;
+        const std::size_t first = slice;
+        while (slice < slices_.size() && slices_[slice].stop == stop) ++slice;
+        const double range = range_m(tag, port, stop);
+        if (!(range <= far_m_)) continue;
+        if (!open || stops_[stop].cell != cell) cells.cell_begin.push_back(cells.bins.size());
+        open = true;
+        cell = stops_[stop].cell;
+        cells.bins.push_back(bin_of(tag, port, first, slice, range));
+        cells.slices += static_cast<double>(slice - first);
+        cells.seen_slices += cells.bins.back().seen;
+      }
+    }
+    cells.tag_begin.push_back(cells.cell_begin.size());
+  }
+
+  [[nodiscard]] CalibrationBin bin_of(std::size_t tag, std::size_t port, std::size_t first, std::size_t end,
+                                      double range) const {
+    CalibrationBin bin;
+    bin.range_m = range;
+    const std::uint64_t base = (std::uint64_t{tag} * ports_.size() + port) * slices_.size();
+    auto seen = std::lower_bound(seen_.begin(), seen_.end(), base + first);
+    for (std::size_t slice = first; slice < end; ++slice) {
+      const double listen = slices_[slice].listen_s[port];
+      if (seen != seen_.end() && *seen == base + slice) {
+        ++seen;
+        ++bin.seen;
+        bin.seen_listen_s += listen;
+      } else {
+        ++bin.unseen;
+        bin.unseen_listen_s += listen;
+      }
+    }
+    if (bin.seen > 0) bin.seen_listen_s /= bin.seen;
+    return bin;
+  }
+
+  void finish(CalibrationCells& cells) const {
+    cells.reads = reads_;
+    cells.nearest_m = quantile(heard_m_, 0.05);
+    cells.farthest_m = quantile(heard_m_, 0.95);
+    for (const Stop& stop : stops_)
+      cells.moved_m = std::max(cells.moved_m, norm(stop.pose.position - stops_.front().pose.position));
+  }
+
+  const Recording& recording_;
+  CalibrationSlicing slicing_;
+  mocks::AirParameters air_;
+  std::vector<int> ports_;
+  std::vector<double> bearings_;
+  std::vector<Slice> slices_;
+  std::vector<Stop> stops_;
+  std::vector<std::uint64_t> seen_;
+  std::vector<double> heard_m_;
+  double far_m_ = 0.0;
+  std::uint64_t reads_ = 0;
+};
+
+}  // namespace
+
+CalibrationCells cells_of(const Recording& recording, const Scene& scene, const CalibrationSlicing& slicing) {
+  if (recording.poses.size() < 2 || scene.read_plan.ports.empty()) {
+    CalibrationCells none;
+    none.cell_begin = {0};
+    none.tag_begin.assign(recording.tags.size() + 1, 0);
+    return none;
+  }
+  return Slicer(recording, scene, slicing).cut();
+}
+
+}  // namespace forager::boards

@@ -1,0 +1,209 @@
+#include "boards/published_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "boards/simplex_search.hpp"
+
+namespace forager::boards {
+namespace {
+
+constexpr std::size_t kParameters = 3;
+constexpr const char* kNames[kParameters] = {"r0_m", "spread_db", "rician_k_db"};
+constexpr const char* kUnits[kParameters] = {"m", "dB", "dB"};
+constexpr double kStep[kParameters] = {0.06, 0.4, 2.0};  // ln m, dB, dB
+constexpr double kLowest[kParameters] = {-3.0, 0.0, -10.0};
+constexpr double kHighest[kParameters] = {3.5, 12.0, 40.0};
+constexpr double kHopeless = 1e9;
+
+using Point = std::array<double, kParameters>;
+using Matrix = std::array<std::array<double, kParameters>, kParameters>;
+
+// 97.5 % of Student's t, 0.3 % high at 3 degrees of freedom and better beyond (Cornish-Fisher).
+double student_975(double freedom) {
+  constexpr double z = 1.959963984540054;
+  const double z3 = z * z * z;
+  return z + (z3 + z) / (4.0 * freedom) +
+         (5.0 * z3 * z * z + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom) +
+         (3.0 * z3 * z3 * z + 19.0 * z3 * z * z + 17.0 * z3 - 15.0 * z) /
+             (384.0 * freedom * freedom * freedom);
+}
+
+// Gauss-Jordan; nothing if a pivot vanishes beside the largest.
+std::optional<Matrix> inverse(Matrix m) {
+  Matrix out{};
+  double largest = 0.0;
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    out[i][i] = 1.0;
+    largest = std::max(largest, std::abs(m[i][i]));
+  }
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    if (!(std::abs(m[i][i]) > 1e-9 * largest)) return std::nullopt;
+    const double pivot = m[i][i];
+    for (std::size_t j = 0; j < kParameters; ++j) {
+      m[i][j] /= pivot;
+      out[i][j] /= pivot;
+    }
+    for (std::size_t k = 0; k < kParameters; ++k) {
+      if (k == i) continue;
+      const double factor = m[k][i];
+      for (std::size_t j = 0; j < kParameters; ++j) {
+        m[k][j] -= factor * m[i][j];
+        out[k][j] -= factor * out[i][j];
+      }
+    }
+  }
+  return out;
+}
+
+class Fit {
+ public:
+  explicit Fit(const PublishedFitOptions& options) : options_(options) {
+    reproduce_.folder = options.folder;
+    reproduce_.seeds = options.seeds;
+    reproduce_.runs = options.runs;
+    if (reproduce_.runs.empty())
+      for (const PublishedRun& run : published_runs())
+        if (run.in_fit) reproduce_.runs.emplace_back(run.run);
+  }
+
+  // Median coverages less published ones, points.
+  hal::Result<std::vector<double>> differences(Point at) {
+    for (std::size_t i = 0; i < kParameters; ++i) at[i] = std::clamp(at[i], kLowest[i], kHighest[i]);
+    reproduce_.change = [at](Scene& scene) {
+      scene.world.radio.r0_m = std::exp(at[0]);
+      scene.world.radio.spread_db = at[1];
+      scene.world.radio.rician_k_db = at[2];
+    };
+    auto result = reproduce(reproduce_);
+    if (!result) return hal::fail(std::move(result).error());
+    ++evaluations_;
+    last_ = std::move(*result);
+    std::vector<double> out;
+    for (const ReproducedRun& run : last_.runs)
+      if (const auto difference = run.difference_points()) out.push_back(*difference);
+    if (options_.progress) options_.progress(evaluations_, last_.rms_points().value_or(0.0));
+    return out;
+  }
+
+  hal::Result<Point> search(const Point& from) {
+    std::optional<hal::Error> trouble;
+    const auto squares = [&](const std::vector<double>& x) {
+      if (trouble) return kHopeless;
+      const auto differences_now = differences({x[0], x[1], x[2]});
+      if (!differences_now) {
+        trouble = differences_now.error();
+        return kHopeless;
+      }
+      double sum = 0.0;
+      for (const double d : *differences_now) sum += d * d;
+      for (std::size_t i = 0; i < kParameters; ++i)
+        sum += 1e3 * std::max({0.0, kLowest[i] - x[i], x[i] - kHighest[i]});
+      return sum;
+    };
+    const auto found = simplex_search(squares, {from.begin(), from.end()},
+                                      {std::begin(kStep), std::end(kStep)}, {options_.evaluations, 0.5});
+    if (trouble) return hal::fail(std::move(*trouble));
+    Point best{};
+    for (std::size_t i = 0; i < kParameters; ++i) best[i] = std::clamp(found.at[i], kLowest[i], kHighest[i]);
+    return best;
+  }
+
+  [[nodiscard]] const Reproduction& last() const { return last_; }
+  [[nodiscard]] int evaluations() const { return evaluations_; }
+  [[nodiscard]] const std::vector<std::string>& runs() const { return reproduce_.runs; }
+
+ private:
+  PublishedFitOptions options_;
+  ReproduceOptions reproduce_;
+  Reproduction last_;
+  int evaluations_ = 0;
+};
+
+// Half widths of the 95 % intervals.
+hal::Result<Point> half_widths(Fit& fit, const Point& best, const std::vector<double>& residuals) {
+  if (residuals.size() <= kParameters)
+    return hal::fail(hal::ErrorCode::refused, "published totals", "tell r0_m, spread_db, rician_k_db",
+                     fmt::format("{} figures do not tell {} parameters", residuals.size(), kParameters),
+                     "Fit to more runs.");
+  std::array<std::vector<double>, kParameters> slopes;
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    Point up = best;
+    Point down = best;
+    up[i] = std::min(up[i] + kStep[i], kHighest[i]);
+    down[i] = std::max(down[i] - kStep[i], kLowest[i]);
+    const auto above = fit.differences(up);
+    if (!above) return hal::fail(above.error());
+    const auto below = fit.differences(down);
+    if (!below) return hal::fail(below.error());
+    for (std::size_t f = 0; f < above->size(); ++f)
+      slopes[i].push_back(((*above)[f] - (*below)[f]) / (up[i] - down[i]));
+  }
+  Matrix information{};
+  double squares = 0.0;
+  for (const double r : residuals) squares += r * r;
+  for (std::size_t i = 0; i < kParameters; ++i)
+    for (std::size_t j = 0; j < kParameters; ++j)
+      for (std::size_t f = 0; f < residuals.size(); ++f)
+        information[i][j] += slopes[i][f] * slopes[j][f] * kStep[i] * kStep[j];
+  for (std::size_t i = 0; i < kParameters; ++i)
+    if (!(information[i][i] > 1e-6))
+      return hal::fail(hal::ErrorCode::refused, "published totals", fmt::format("tell {}", kNames[i]),
+                       "no figure depends on it", "Fit to other runs.");
+  const auto covariance = inverse(information);
+  if (!covariance)
+    return hal::fail(hal::ErrorCode::refused, "published totals", "tell r0_m, spread_db, rician_k_db",
+                     "the figures depend on them together only: the information matrix is singular",
+                     "Fit to more runs.");
+  const auto freedom = static_cast<double>(residuals.size() - kParameters);
+  Point widths{};
+  for (std::size_t i = 0; i < kParameters; ++i)
+    widths[i] = student_975(freedom) * kStep[i] * std::sqrt((*covariance)[i][i] * squares / freedom);
+  return widths;
+}
+
+}  // namespace
+
+hal::Result<PublishedFit> fit_published(const PublishedFitOptions& options) {
+  Fit fit(options);
+  const auto scene = load_scene(fmt::format("{}/{}.toml", options.folder, fit.runs().front()));
+  if (!scene) return hal::fail(scene.error());
+  const SceneRadio& radio = scene->world.radio;
+  const Point from{std::log(radio.r0_m), radio.spread_db, std::min(radio.rician_k_db, kHighest[2])};
+  const auto started = fit.differences(from);
+  if (!started) return hal::fail(started.error());
+  PublishedFit result;
+  result.started_rms_points = fit.last().rms_points().value_or(0.0);
+  const auto best = options.evaluations > 1 ? fit.search(from) : hal::Result<Point>(from);
+  if (!best) return hal::fail(best.error());
+  const auto residuals = fit.differences(*best);
+  if (!residuals) return hal::fail(residuals.error());
+  result.reproduction = fit.last();
+  const auto widths = half_widths(fit, *best, *residuals);
+  if (!widths) return hal::fail(widths.error());
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    FittedParameter p;
+    p.name = kNames[i];
+    p.unit = kUnits[i];
+    p.value = (*best)[i];
+    p.low = std::max(p.value - (*widths)[i], kLowest[i]);
+    p.high = std::min(p.value + (*widths)[i], kHighest[i]);
+    p.open_low = p.low == kLowest[i] && kLowest[i] != 0.0;
+    p.open_high = p.high == kHighest[i];
+    if (i == 0) {
+      p.value = std::exp(p.value);
+      p.low = std::exp(p.low);
+      p.high = std::exp(p.high);
+    }
+    result.parameters.push_back(std::move(p));
+  }
+  result.evaluations = fit.evaluations();
+  return result;
+}
+
+}  // namespace forager::boards
