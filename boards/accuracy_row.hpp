@@ -33,9 +33,11 @@ struct AccuracyOptions {
 // boards/accuracy_row.cpp.
 [[nodiscard]] std::vector<AccuracyRow> accuracy_rows(const AccuracyOptions& options);
 
+[[nodiscard]] std::vector<AccuracyRow> accuracy_air(const AccuracyOptions& options);
 [[nodiscard]] std::vector<AccuracyRow> accuracy_detection(const AccuracyOptions& options);
 [[nodiscard]] std::vector<AccuracyRow> accuracy_guard(const AccuracyOptions& options);
 [[nodiscard]] std::vector<AccuracyRow> accuracy_planner(const AccuracyOptions& options);
 [[nodiscard]] std::vector<AccuracyRow> accuracy_relative_pose(const AccuracyOptions& options);
+[[nodiscard]] std::vector<AccuracyRow> accuracy_sweep(const AccuracyOptions& options);
 
 }  // namespace forager::boards
