@@ -6,12 +6,12 @@ namespace forager::boards {
 namespace {
 
 TEST(AccuracyAir, BothModelsFindWhatTheSumOfProbabilitiesPromises) {
-  const auto rows = accuracy_air({.seed = 2, .effort = 0.2});
+  const auto rows = accuracy_air({.seed = 2, .effort = 0.1});
   ASSERT_EQ(rows.size(), 18U);
   for (const AccuracyRow& row : rows) {
     SCOPED_TRACE(row.name + ": " + row.variant);
-    // Eight runs of some 125 tags, half of them certain: four deviations are 8 %. Frames are far closer.
-    EXPECT_LT(row.max_rel_error, 0.08);
+    // Four runs of some 125 tags, half of them certain: four deviations are 12 %. Frames are far closer.
+    EXPECT_LT(row.max_rel_error, 0.12);
     EXPECT_GT(row.max_rel_error, 0.0);
     EXPECT_TRUE(row.work != nullptr);
     row.work();
