@@ -114,12 +114,14 @@ struct SceneRadio {
   double t0_s = 1.0;
   double beam_horizontal_rad = 1.2217;
   double beam_vertical_rad = 1.2217;
-  std::string pattern = "cosine";  // cosine, gaussian
-  double pattern_exponent = 0.5;   // u = R / (R0 D0^e): 0.5 the paper, 1 the published plugin
-  double power_up_limit = 2.0;     // beyond this u a tag has too little power, however long one listens
-  double spread_db = 2.0;          // sensitivity from tag to tag, standard deviation
-  double rician_k_db = 6.0;        // frozen multipath: power of the direct path over the scattered ones
-  double occlusion_db = 0.0;       // loss for each shelf crossed
+  std::string pattern = "cosine";        // cosine, gaussian
+  double pattern_exponent = 0.5;         // u = R / (R0 D0^e): 0.5 the paper, 1 the published plugin
+  double power_up_limit = 2.0;           // beyond this u a tag has too little power, however long one listens
+  double spread_db = 2.0;                // sensitivity from tag to tag, standard deviation
+  double rician_k_db = 6.0;              // frozen multipath: power of the direct path over the scattered ones
+  std::string tag_axes = "none";         // "none", "upright", "scattered": tags as dipoles
+  double polarisation_loss_db = 3.0103;  // of them, before a circular antenna
+  double occlusion_db = 0.0;             // loss for each shelf crossed
   double rssi_at_1m_dbm = -51.0;
   double patience_s = 0.018;  // the radio leaves a port that brought nothing new for so long, median
   std::optional<double> singulation_s;  // one reply at most in this time; by default what the link takes

@@ -53,6 +53,8 @@ SceneRadio read_radio(ConfigReader table) {
   r.rssi_at_1m_dbm = table.number("rssi_at_1m_dbm", r.rssi_at_1m_dbm, {-90.0, 0.0});
   r.patience_s = table.number("patience_s", r.patience_s, {0.001, 60.0});
   r.singulation_s = table.optional_number("singulation_s", {0.0, 1.0});
+  r.tag_axes = table.choice("tag_axes", r.tag_axes, {"none", "upright", "scattered"});
+  r.polarisation_loss_db = table.number("polarisation_loss_db", r.polarisation_loss_db, {0.0, 60.0});
   r.occlusion_db = table.number("occlusion_db", r.occlusion_db, {0.0, 60.0});
   return r;
 }

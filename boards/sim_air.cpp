@@ -20,6 +20,10 @@ mocks::AirParameters air_of(const Scene& scene) {
   air.power_up_limit = radio.power_up_limit;
   air.spread_db = radio.spread_db;
   air.rician_k_db = radio.rician_k_db;
+  air.dipoles.axes = radio.tag_axes == "upright"     ? mocks::TagAxes::upright
+                     : radio.tag_axes == "scattered" ? mocks::TagAxes::scattered
+                                                     : mocks::TagAxes::none;
+  air.dipoles.polarisation_loss_db = radio.polarisation_loss_db;
   air.occlusion_db = radio.occlusion_db;
   air.rssi_at_1m_dbm = radio.rssi_at_1m_dbm;
   const SceneSkip& skip = scene.world.skip;

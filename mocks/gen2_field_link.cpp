@@ -44,7 +44,11 @@ bool crosses(const Box& box, hal::Vec3 from, hal::Vec3 to) {
 
 AirLink::AirLink(const World& world, std::vector<AntennaMounting> antennas, const AirParameters& air,
                  std::uint64_t seed)
-    : world_(&world), air_(air), fade_(air.rician_k_db, air.fade_length_m, seed), hazard_table_(air) {
+    : world_(&world),
+      air_(air),
+      seed_(seed),
+      fade_(air.rician_k_db, air.fade_length_m, seed),
+      hazard_table_(air) {
   hal::Random random = hal::Random::stream(seed, 1);
   spread_db_.reserve(world.tags.size());
   r0_m_.reserve(world.tags.size());
@@ -92,6 +96,8 @@ TagLink AirLink::link_above(const AntennaView& antenna, std::uint32_t tag, doubl
   if (air_.occlusion_db > 0.0)
     link.amplitude *= amplitude_of(-air_.occlusion_db *
                                    obstacles_between(antenna.position_world, world_->tags.position(tag)));
+  if (air_.dipoles.axes != TagAxes::none)
+    link.amplitude *= std::sqrt(orientation_power(air_.dipoles, tag, -1.0 * offset, seed_));
   link.u = std::max(
       normalised_range(link.range_m, r0_m * link.amplitude, link.pattern_power, air_.pattern_exponent),
       kNearestU);

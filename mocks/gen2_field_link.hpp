@@ -72,6 +72,7 @@ class AirLink {
   };
   std::vector<Mounted> antennas_;
   AirParameters air_;
+  std::uint64_t seed_;  // of the axes of the tags
   FrozenFade fade_;
   HazardTable hazard_table_;
   double longest_arm_m_ = 0.0;

@@ -24,6 +24,7 @@ hal::Result<> validate(const AirParameters& air, const std::vector<AntennaMounti
       {"rician_k_db", air.rician_k_db, -40.0, kAny},
       {"fade_length_m", air.fade_length_m, 1e-3, 1e3},
       {"occlusion_db", air.occlusion_db, 0.0, 200.0},
+      {"polarisation_loss_db", air.dipoles.polarisation_loss_db, 0.0, 60.0},
       {"rssi_at_1m_dbm", air.rssi_at_1m_dbm, -120.0, 0.0},
       {"rssi_noise_db", air.rssi_noise_db, 0.0, 20.0},
       {"patience_median_s", air.patience_median_s, 1e-3, 60.0},

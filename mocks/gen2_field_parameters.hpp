@@ -7,6 +7,7 @@
 #include "hal/pose.hpp"
 #include "mocks/antenna_pattern.hpp"
 #include "mocks/detection.hpp"
+#include "mocks/tag_dipole.hpp"
 
 namespace forager::mocks {
 
@@ -34,6 +35,9 @@ struct AirParameters {
   // Sensitivity of a tag (chip, orientation, what it is glued to), fixed for ever: standard deviation in dB,
   // cut at 3 deviations.
   double spread_db = 3.0;
+  // Tags as dipoles that hear one polarisation, on top of the spread. Off: what orientation costs is part of
+  // the spread.
+  TagDipoles dipoles;
   // Multipath between one antenna and one tag, frozen while both stay: power of the direct path over that of
   // the scattered ones (Rician K) in dB, 60 and above: none; and the distance over which it changes.
   double rician_k_db = 6.0;
