@@ -26,7 +26,7 @@ class AutopilotBench {
 
   explicit AutopilotBench(const MavlinkConfig& config = {},
                           mocks::MemoryStreamKind kind = mocks::MemoryStreamKind::datagrams)
-      : line_("udp autopilot", kind), ours_(std::move(make(config))) {
+      : line_("udp autopilot", kind), ours_(make(config)) {
     (void)line_.far().open();
     ours_->update(now_);
   }

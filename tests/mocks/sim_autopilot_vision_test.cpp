@@ -86,7 +86,11 @@ TEST(SimAutopilotVision, DropsWhatComesFasterThan50Hz) {
 }
 
 TEST(SimAutopilotVision, FourHertzIsEnoughThreeIsNot) {
-  for (const auto& [period, healthy] : {std::pair{250ms, true}, std::pair{340ms, false}}) {
+  struct Rate {
+    hal::Duration period;
+    bool healthy;
+  };
+  for (const Rate rate : {Rate{250ms, true}, Rate{340ms, false}}) {
     AutopilotBench bench;
     bench.vision = false;
     bool always = true;
@@ -94,13 +98,13 @@ TEST(SimAutopilotVision, FourHertzIsEnoughThreeIsNot) {
     int warm = 0;
     bench.run(5s, [&] {
       if (bench.now() >= next) {
-        next += period;
+        next += rate.period;
         bench.send_vision();
         ++warm;
       }
       if (warm > 2) always = always && bench.sim().estimator().healthy(bench.now());
     });
-    EXPECT_EQ(always, healthy);
+    EXPECT_EQ(always, rate.healthy);
   }
 }
 
