@@ -16,6 +16,8 @@ class DriveRig {
   virtual ~DriveRig() = default;
   [[nodiscard]] virtual flight::DriveDevices devices(hal::Journal& journal) = 0;
   [[nodiscard]] virtual mocks::RollingVehicle& vehicle() = 0;
+  // Where it truly is, rolling or flying.
+  [[nodiscard]] virtual const mocks::BodyState& body() { return vehicle().state(); }
   // Emulated devices and vehicle live up to `now`.
   virtual void advance(hal::Instant now) = 0;
   // A fault of the devices or the vehicle; those of the program are the runner's.
@@ -26,7 +28,8 @@ class DriveRig {
 
 [[nodiscard]] hal::Result<std::unique_ptr<DriveRig>> make_direct_rig(const DriveScene& scene,
                                                                      std::uint64_t seed);
-// The same vehicle behind MAVLink bytes and servo pulses.
+// The same vehicle behind MAVLink bytes and servo pulses. It takes off when it is told to, and stands on its
+// wheels again once it has landed and is disarmed.
 [[nodiscard]] hal::Result<std::unique_ptr<DriveRig>> make_wire_rig(const DriveScene& scene,
                                                                    std::uint64_t seed, hal::Journal& journal);
 

@@ -54,9 +54,9 @@ class WireRig final : public DriveRig {
   WireRig(const DriveScene& scene, std::uint64_t seed)
       : draw_(draw_plant(scene, seed)),
         vehicle_(draw_.vehicle, scene.start),
-        pose_(vehicle_, draw_.pose, drive_seed(seed, DriveStream::pose)),
         telemetry_("sim autopilot", mocks::MemoryStreamKind::datagrams, kTelemetryBytes),
         autopilot_(telemetry_.far(), autopilot_config(scene, seed)),
+        pose_(autopilot_, draw_.pose, drive_seed(seed, DriveStream::pose)),
         pwm_("brake pwm", 2),
         keeper_(hal::from_seconds(scene.keeper_s)),
         button_("stop button") {
@@ -84,6 +84,7 @@ class WireRig final : public DriveRig {
     return {*bridge_, pose_, *left_, *right_, journal, &keeper_, &button_, nullptr};
   }
   mocks::RollingVehicle& vehicle() override { return vehicle_; }
+  const mocks::BodyState& body() override { return autopilot_.state(); }
 
   void advance(hal::Instant now) override {
     constexpr double kLeftPressed = 1725.0;
@@ -92,6 +93,7 @@ class WireRig final : public DriveRig {
     keeper_.tick(now);
     vehicle_.press(keeper_.demand(servo_place(pwm_.channel(0), kLeftPressed)),
                    keeper_.demand(servo_place(pwm_.channel(1), kRightPressed)));
+    change_ground();
     autopilot_.update(now);
   }
 
@@ -109,11 +111,24 @@ class WireRig final : public DriveRig {
   }
 
  private:
+  void change_ground() {
+    const bool takes_off =
+        autopilot_.armed() && autopilot_.target().kind == mocks::GuidedTarget::Kind::takeoff;
+    const bool stands = !autopilot_.armed() && autopilot_.landed();
+    if (takes_off && !flying_)
+      autopilot_.put_on_wheels(nullptr);
+    else if (stands && flying_)
+      autopilot_.put_on_wheels(&vehicle_);
+    else
+      return;
+    flying_ = !flying_;
+  }
+
   DrivePlantDraw draw_;
   mocks::RollingVehicle vehicle_;
-  mocks::SimPoseSource pose_;
   mocks::MemoryStreamPair telemetry_;
   mocks::SimAutopilot autopilot_;
+  mocks::SimPoseSource pose_;
   mocks::FakePwmGroup pwm_;
   BrakeKeeper keeper_;
   mocks::FakeDigitalIn button_;
@@ -121,6 +136,7 @@ class WireRig final : public DriveRig {
   std::unique_ptr<flight::MavlinkAutopilot> bridge_;
   std::optional<servo::PwmBrake> left_;
   std::optional<servo::PwmBrake> right_;
+  bool flying_ = false;
 };
 
 }  // namespace

@@ -107,7 +107,8 @@ void HybridMode::stand(hal::Instant now) {
   const AutopilotState& autopilot = autopilot_->state();
   const bool known = localisation_.healthy() && autopilot.link_up && autopilot.pose_valid;
   const bool still = still_since_ && now - *still_since_ >= config_.stand_for;
-  if (known && still && !autopilot.armed && waited(config_.stand_for, now)) return begin_leg(now);
+  if (known && still && !autopilot.armed && !autopilot.in_air && waited(config_.stand_for, now))
+    return begin_leg(now);
   if (waited(config_.ask_timeout, now))
     stop(known ? HybridEnd::refused : HybridEnd::pose_lost,
          known ? "it does not stand still, or is armed by somebody else"

@@ -185,6 +185,17 @@ void RollingVehicle::move(double speed, double yaw_rate, double dt) {
   state_.velocity_world_m_s = {speed * c - side_ * s, speed * s + side_ * c, 0.0};
 }
 
+void RollingVehicle::stand_at(hal::Pose pose) {
+  pose.position.z = pose.pitch_rad = pose.roll_rad = 0.0;
+  state_ = {.pose = pose,
+            .velocity_world_m_s = {},
+            .yaw_rate_rad_s = 0.0,
+            .armed = state_.armed,
+            .on_ground = true};
+  command_.thrust = command_.pitch_rad = 0.0;
+  thrust_n_ = pitch_rad_ = drive_n_ = speed_ = side_ = 0.0;
+}
+
 void RollingVehicle::set_motion(double speed_m_s, double yaw_rate_rad_s) {
   speed_ = speed_m_s;
   state_.yaw_rate_rad_s = yaw_rate_rad_s;

@@ -68,7 +68,9 @@ class RollingVehicle final : public TrueBody {
   }
   // The floor changes under way (a wet patch).
   void set_friction(double mu) { parameters_.friction = mu; }
-  // Sets it rolling; for tests and for landings.
+  // Stands there, still and without thrust; for a vehicle that landed on its wheels.
+  void stand_at(hal::Pose pose);
+  // Sets it rolling; for tests.
   void set_motion(double speed_m_s, double yaw_rate_rad_s);
 
   [[nodiscard]] double speed_m_s() const { return speed_; }  // forward, middle of the axle

@@ -37,8 +37,9 @@ class SimAutopilot : public TrueBody {
   void update(hal::Instant now);
 
   // Puts the autopilot onto a vehicle that stands on wheels: attitude and thrust targets push it, its state
-  // is the body's. The vehicle must outlive it; null takes it off again.
-  void put_on_wheels(RollingVehicle* wheels) { wheels_ = wheels; }
+  // is the body's. The vehicle must outlive it; null takes it off again. Whichever takes over stands where
+  // the other was.
+  void put_on_wheels(RollingVehicle* wheels);
   // Passes on a ground station's command to a companion computer: disarm, that is stop.
   void relay_stop(std::uint8_t system, std::uint8_t component);
   [[nodiscard]] double wheel_thrust() const { return armed_ ? attitude_.thrust : 0.0; }

@@ -12,6 +12,14 @@ constexpr double kThrustLands = 0.02;  // below it the land detector counts the 
 
 }  // namespace
 
+void SimAutopilot::put_on_wheels(RollingVehicle* wheels) {
+  if (wheels_ != nullptr)
+    vehicle_.stand_at(wheels_->state().pose);
+  else if (wheels != nullptr && started_)
+    wheels->stand_at(vehicle_.state().pose);
+  wheels_ = wheels;
+}
+
 // SET_ATTITUDE_TARGET as ArduCopter 4.6 GUIDED reads it: all three rates or none, never without thrust, a
 // quaternion of unit length. Not in flight: nothing here flies attitudes.
 void SimAutopilot::hear_attitude(const MavlinkPayload& m) {

@@ -61,6 +61,18 @@ void Vehicle::attach(const World* world, hal::Journal* journal) {
   free_way_m_ = 0.0;
 }
 
+void Vehicle::stand_at(hal::Pose pose) {
+  pose.position.z = parameters_.floor_z_m;
+  pose.pitch_rad = pose.roll_rad = 0.0;
+  state_ = {.pose = pose,
+            .velocity_world_m_s = {},
+            .yaw_rate_rad_s = 0.0,
+            .armed = state_.armed,
+            .on_ground = true};
+  acceleration_ = tilt_m_s2_ = wind_felt_m_s2_ = {};
+  free_way_m_ = 0.0;
+}
+
 double Vehicle::battery_v() const {
   const double open = parameters_.empty_v + battery_fraction_ * (parameters_.full_v - parameters_.empty_v);
   return open - parameters_.resistance_ohm * battery_a_;

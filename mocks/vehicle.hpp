@@ -66,6 +66,8 @@ class Vehicle : public TrueBody {
   // The world it can hit and where a crash is written; either may be null. Both must outlive the vehicle.
   void attach(const World* world, hal::Journal* journal);
   void command(const VehicleCommand& command) { command_ = command; }
+  // Stands there, level and still; for a vehicle that got there on its wheels.
+  void stand_at(hal::Pose pose);
   // Speed limits may change in flight (DO_CHANGE_SPEED), physics may not.
   void limit_speed(double horizontal_m_s) { parameters_.max_speed_m_s = horizontal_m_s; }
   void limit_climb(double up_m_s, double down_m_s) {
