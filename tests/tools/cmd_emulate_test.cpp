@@ -50,7 +50,7 @@ TEST(EmulateCommand, NamesThePortThatIsInUse) {
   SocketRig rig;
   rig.start_reader();
   rig.start_autopilot();
-  const auto second = [&rig](std::vector<std::string> arguments) {
+  const auto second = [](const std::vector<std::string>& arguments) {
     const ProgramResult result = run_program(arguments);
     EXPECT_EQ(result.exit_code, 1) << result.out;
     EXPECT_EQ(result.out, "");
