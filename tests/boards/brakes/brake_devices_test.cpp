@@ -16,7 +16,7 @@
 #include "mocks/virtual_clock.hpp"
 #include "servo/brake_steer.hpp"
 #include "servo/brakes.hpp"
-#include "tests/hal/linux/fake_gpio_kernel.hpp"
+#include "tests/hal/linux/fake_gpio_calls.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
 
 namespace forager::boards {

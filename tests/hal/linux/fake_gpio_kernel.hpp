@@ -1,41 +1,30 @@
 #pragma once
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/gpio.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
-#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdarg>
 #include <cstdint>
 #include <cstring>
 #include <ctime>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hal/time.hpp"
+#include "tests/hal/linux/fake_gpio_line.hpp"
 
 // GPIO chips of a kernel in memory under the real libgpiod: the system calls the library makes (access, open,
 // stat, ioctl, close) are taken from it before the C library sees them, for paths and descriptors of the fake
 // chips only. It speaks the v1 interface of linux/gpio.h, like kernels from 4.8 on. Include it in one file of
 // a test program.
 namespace forager::hal::fake {
-
-struct GpioLine {
-  std::string name;
-  std::string consumer{};  // empty: free
-  bool level = false;       // at the pin
-  std::uint32_t flags = 0;  // GPIOLINE_FLAG_*
-  int event_pipe = -1;      // where edges of whoever asked for them go
-  bool used = false;
-  std::vector<bool> history{};  // levels that were driven by an output, in order
-};
 
 class FakeGpio {
  public:
@@ -66,15 +55,21 @@ class FakeGpio {
     if (line.level == level) return;
     line.level = level;
     if (line.event_pipe < 0) return;
-    gpioevent_data event{};
-    event.timestamp = static_cast<std::uint64_t>(at.time_since_epoch().count());
-    if (chips.at(number).wall_clock_stamps) event.timestamp += wall_minus_monotonic();
+    auto stamp = static_cast<std::uint64_t>(at.time_since_epoch().count());
+    if (chips.at(number).wall_clock_stamps) stamp += wall_minus_monotonic();
     const bool active = level != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
-    event.id = active ? GPIOEVENT_EVENT_RISING_EDGE : GPIOEVENT_EVENT_FALLING_EDGE;
+    gpio_v2_line_event v2{};
+    v2.timestamp_ns = stamp;
+    v2.id = active ? GPIO_V2_LINE_EVENT_RISING_EDGE : GPIO_V2_LINE_EVENT_FALLING_EDGE;
+    v2.offset = static_cast<std::uint32_t>(offset);
+    gpioevent_data v1{};
+    v1.timestamp = stamp;
+    v1.id = active ? GPIOEVENT_EVENT_RISING_EDGE : GPIOEVENT_EVENT_FALLING_EDGE;
+    const std::size_t size = line.v2_events ? sizeof v2 : sizeof v1;
     int waiting = 0;
     ::ioctl(line.event_pipe, FIONREAD, &waiting);
-    if (static_cast<std::size_t>(waiting) >= 16 * sizeof event) return;  // the kernel's queue is full
-    static_cast<void>(!::write(line.event_pipe, &event, sizeof event));
+    if (static_cast<std::size_t>(waiting) >= 16 * size) return;  // the kernel's queue is full
+    static_cast<void>(!::write(line.event_pipe, line.v2_events ? static_cast<void*>(&v2) : &v1, size));
   }
 
   // What the C library's functions ask. Nothing: not ours.
@@ -125,7 +120,7 @@ class FakeGpio {
     Handle& handle = handles_.at(fd);
     if (chips.count(handle.chip) == 0 || chips.at(handle.chip).gone) return ENODEV;
     Chip& chip = chips.at(handle.chip);
-    if (!handle.is_chip) return line_ioctl(chip, handle, request, static_cast<gpiohandle_data*>(argument));
+    if (!handle.is_chip) return line_ioctl(chip, handle, request, argument);
     switch (request) {
       case GPIO_GET_CHIPINFO_IOCTL:
         return chip_info(chip, handle.chip, *static_cast<gpiochip_info*>(argument));
@@ -135,6 +130,10 @@ class FakeGpio {
         return request_lines(chip, handle.chip, *static_cast<gpiohandle_request*>(argument));
       case GPIO_GET_LINEEVENT_IOCTL:
         return request_events(chip, handle.chip, *static_cast<gpioevent_request*>(argument));
+      case GPIO_V2_GET_LINEINFO_IOCTL:
+        return v2_line_info(chip, *static_cast<gpio_v2_line_info*>(argument));
+      case GPIO_V2_GET_LINE_IOCTL:
+        return v2_request(chip, handle.chip, *static_cast<gpio_v2_line_request*>(argument));
       default:
         return ENOTTY;
     }
@@ -186,6 +185,7 @@ class FakeGpio {
   static void take(GpioLine& line, const char* consumer, std::uint32_t flags) {
     line.used = true;
     line.consumer = consumer;
+    line.v2_events = false;
     line.flags = 0;
     if ((flags & GPIOHANDLE_REQUEST_OUTPUT) != 0) line.flags |= GPIOLINE_FLAG_IS_OUT;
     if ((flags & GPIOHANDLE_REQUEST_ACTIVE_LOW) != 0) line.flags |= GPIOLINE_FLAG_ACTIVE_LOW;
@@ -224,84 +224,75 @@ class FakeGpio {
     handles_[request.fd] = {number, {request.lineoffset}, ends[1], false};
     return 0;
   }
-  static int line_ioctl(Chip& chip, const Handle& handle, unsigned long request, gpiohandle_data* data) {
-    if (request == GPIOHANDLE_GET_LINE_VALUES_IOCTL) {
-      for (std::size_t i = 0; i < handle.lines.size(); ++i) {
-        const GpioLine& line = chip.lines[handle.lines[i]];
-        data->values[i] = line.level != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
-      }
-      return 0;
+  static bool is_active(const GpioLine& line) {
+    return line.level != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
+  }
+  static int line_ioctl(Chip& chip, const Handle& handle, unsigned long request, void* argument) {
+    auto* v1 = static_cast<gpiohandle_data*>(argument);
+    auto* v2 = static_cast<gpio_v2_line_values*>(argument);
+    const bool sets = request == GPIOHANDLE_SET_LINE_VALUES_IOCTL || request == GPIO_V2_LINE_SET_VALUES_IOCTL;
+    const bool is_v2 = request == GPIO_V2_LINE_SET_VALUES_IOCTL || request == GPIO_V2_LINE_GET_VALUES_IOCTL;
+    if (!sets && !is_v2 && request != GPIOHANDLE_GET_LINE_VALUES_IOCTL) return EINVAL;
+    if (sets && chip.fail_next_set != 0) return std::exchange(chip.fail_next_set, 0);
+    chip.sets += sets ? 1 : 0;
+    if (is_v2 && !sets) v2->bits = 0;
+    for (std::size_t i = 0; i < handle.lines.size(); ++i) {
+      GpioLine& line = chip.lines[handle.lines[i]];
+      const std::uint64_t bit = std::uint64_t{1} << i;
+      if (is_v2 && (v2->mask & bit) == 0) continue;
+      if (sets) put(line, is_v2 ? (v2->bits & bit) != 0 : v1->values[i] != 0);
+      if (!sets && is_v2 && is_active(line)) v2->bits |= bit;
+      if (!sets && !is_v2) v1->values[i] = is_active(line) ? 1 : 0;
     }
-    if (request != GPIOHANDLE_SET_LINE_VALUES_IOCTL) return EINVAL;
-    if (chip.fail_next_set != 0) return std::exchange(chip.fail_next_set, 0);
-    ++chip.sets;
-    for (std::size_t i = 0; i < handle.lines.size(); ++i)
-      put(chip.lines[handle.lines[i]], data->values[i] != 0);
+    return 0;
+  }
+
+  static int v2_line_info(const Chip& chip, gpio_v2_line_info& info) {
+    if (info.offset >= chip.lines.size()) return EINVAL;
+    const GpioLine& line = chip.lines[info.offset];
+    const std::uint32_t offset = info.offset;
+    info = {};
+    info.offset = offset;
+    copy(info.name, line.name);
+    copy(info.consumer, line.consumer);
+    info.flags = line.used ? GPIO_V2_LINE_FLAG_USED : 0;
+    for (const FlagPair& flag : kFlags)
+      if (flag.shown != 0 && (line.flags & flag.shown) != 0) info.flags |= flag.v2;
+    if ((line.flags & GPIOLINE_FLAG_IS_OUT) == 0) info.flags |= GPIO_V2_LINE_FLAG_INPUT;
+    return 0;
+  }
+  int v2_request(Chip& chip, int number, gpio_v2_line_request& request) {
+    std::uint64_t flags = request.config.flags;
+    std::uint64_t values = 0;
+    for (std::uint32_t i = 0; i < request.config.num_attrs; ++i) {
+      const auto& attribute = request.config.attrs[i].attr;
+      if (attribute.id == GPIO_V2_LINE_ATTR_ID_FLAGS) flags = attribute.flags;
+      if (attribute.id == GPIO_V2_LINE_ATTR_ID_OUTPUT_VALUES) values = attribute.values;
+    }
+    std::uint32_t asked = 0;
+    for (const FlagPair& flag : kFlags)
+      if ((flags & flag.v2) != 0) asked |= flag.asked;
+    for (std::uint32_t i = 0; i < request.num_lines; ++i)
+      if (const int error = admit(chip, request.offsets[i], asked); error != 0) return error;
+    Handle handle{number, {}, -1, false};
+    const bool events = (flags & (GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING)) != 0;
+    std::array<int, 2> ends{-1, -1};
+    if (events && ::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) return errno;
+    for (std::uint32_t i = 0; i < request.num_lines; ++i) {
+      GpioLine& line = chip.lines[request.offsets[i]];
+      take(line, request.consumer, asked);
+      line.event_pipe = ends[1];
+      line.v2_events = true;
+      if ((asked & GPIOHANDLE_REQUEST_OUTPUT) != 0) put(line, (values >> i & 1U) != 0);
+      handle.lines.push_back(request.offsets[i]);
+    }
+    handle.write_end = ends[1];
+    request.fd = events ? ends[0] : spare_descriptor();
+    handles_[request.fd] = handle;
     return 0;
   }
 
   std::map<int, Handle> handles_;
 };
 
-// The C library's own function of this name.
-template <class Function>
-Function* next(const char* name, Function*) {
-  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
-}
-
 }  // namespace forager::hal::fake
-
-extern "C" {
-
-int access(const char* path, int mode) noexcept {
-  if (forager::hal::fake::FakeGpio::get().number_of(path) >= 0) return 0;
-  static auto* const real = forager::hal::fake::next("access", &access);
-  return real(path, mode);
-}
-
-int lstat(const char* path, struct stat* status) noexcept {
-  const int number = forager::hal::fake::FakeGpio::get().number_of(path);
-  static auto* const real = forager::hal::fake::next("lstat", &lstat);
-  if (number < 0) return real(path, status);
-  *status = {};
-  status->st_mode = S_IFCHR;
-  status->st_rdev = makedev(254, static_cast<unsigned>(number));
-  return 0;
-}
-
-int stat(const char* path, struct stat* status) noexcept {
-  static auto* const real = forager::hal::fake::next("stat", &stat);
-  return forager::hal::fake::FakeGpio::get().number_of(path) >= 0 ? lstat(path, status) : real(path, status);
-}
-
-int open(const char* path, int flags, ...) {
-  va_list rest;
-  va_start(rest, flags);
-  const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(rest, mode_t) : 0;
-  va_end(rest);
-  auto& gpio = forager::hal::fake::FakeGpio::get();
-  if (const int number = gpio.number_of(path); number >= 0) return gpio.open(path, number);
-  static auto* const real = forager::hal::fake::next("open", &open);
-  return real(path, flags, mode);
-}
-
-int ioctl(int fd, unsigned long request, ...) noexcept {
-  va_list rest;
-  va_start(rest, request);
-  void* argument = va_arg(rest, void*);
-  va_end(rest);
-  auto& gpio = forager::hal::fake::FakeGpio::get();
-  static auto* const real = forager::hal::fake::next("ioctl", &ioctl);
-  if (!gpio.owns(fd)) return real(fd, request, argument);
-  const int error = gpio.ioctl(fd, request, argument);
-  if (error == 0) return 0;
-  errno = error;
-  return -1;
-}
-
-int close(int fd) {
-  forager::hal::fake::FakeGpio::get().forget(fd);
-  static auto* const real = forager::hal::fake::next("close", &close);
-  return real(fd);
-}
-}
