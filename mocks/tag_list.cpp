@@ -18,7 +18,7 @@ std::optional<Epc96> epc96_from(std::string_view hex) {
       digit = static_cast<unsigned>(c - 'a') + 10U;
     else
       return std::nullopt;
-    epc[i / 2] = static_cast<std::uint8_t>((epc[i / 2] << 4U) | digit);
+    epc[i / 2] = static_cast<std::uint8_t>((unsigned{epc[i / 2]} << 4U) | digit);
   }
   return epc;
 }
