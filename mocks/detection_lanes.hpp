@@ -68,8 +68,8 @@ struct LaneNull {
   T w = T(1);  // and w_rest: the null to twice the precision
   T w_rest{};
   T slope{};          // 0: no such factor
-  bool wide = false;  // how to get at w, see half_tangent_squared
-  [[nodiscard]] T distance(T at) const { return (w - at * slope) + w_rest; }
+  bool wide = false;  // how to get at w, see half_tangent
+  [[nodiscard]] T distance(T at, T at_rest) const { return (w - at * slope) + (w_rest - at_rest * slope); }
 };
 
 // A beam as the loops want it, in their own type.

@@ -33,19 +33,35 @@ template <class T>
   return (tail + tail) / (T(1) + tail);
 }
 
-// w = tan^2 of half the angle between the leg `along` and the hypotenuse. Near the null of a wide beam the
-// difference rounds less, near boresight the quotient does.
+// w = tan^2 of half an angle, and what rounding took from it.
 template <class T>
-[[nodiscard]] T half_tangent_squared(T along, T across, T hypotenuse, bool wide) {
-  const T sum = hypotenuse + along;
-  if (wide) return (hypotenuse - along) / sum;
-  const T q = across / sum;
-  return q * q;
+struct HalfTangent {
+  T w;
+  T rest;
+};
+
+// Of the angle between the leg `along` and the hypotenuse. Near the null of a wide beam the difference rounds
+// less, near boresight the quotient does.
+[[nodiscard]] inline HalfTangent<double> half_tangent(double along, double across, double hypotenuse,
+                                                      bool wide) {
+  const double sum = hypotenuse + along;
+  if (wide) return {(hypotenuse - along) / sum, 0.0};
+  const double q = across / sum;
+  return {q * q, 0.0};
+}
+
+// Both angles of a float: next to the null its roots and quotients would lose more than its answer may.
+[[nodiscard]] inline HalfTangent<float> narrowed(const HalfTangent<double>& exact) {
+  const auto w = static_cast<float>(exact.w);
+  return {w, static_cast<float>(exact.w - static_cast<double>(w))};
 }
 
 // Square root of the pattern power; 0 at the nulls and beyond.
 template <class T>
-[[nodiscard]] T beam_amplitude(const LaneBeam<T>& beam, T w_h, T w_v) {
+[[nodiscard]] T beam_amplitude(const LaneBeam<T>& beam, const HalfTangent<T>& at_h,
+                               const HalfTangent<T>& at_v) {
+  const T w_h = at_h.w;
+  const T w_v = at_v.w;
   if (!(w_h < beam.null_h.end && w_v < beam.null_v.end)) return T(0);
   T h = beam.series_h[beam.terms - 1];
   T v = beam.series_v[beam.terms - 1];
@@ -54,7 +70,7 @@ template <class T>
     v = v * w_v + beam.series_v[i];
   }
   if (beam.form == BeamForm::cosine) {
-    const T to_null = beam.null_h.distance(w_h) * beam.null_v.distance(w_v);
+    const T to_null = beam.null_h.distance(w_h, at_h.rest) * beam.null_v.distance(w_v, at_v.rest);
     return to_null > T(0) ? h * v * to_null : T(0);
   }
   const T depth = h + v;
@@ -64,19 +80,19 @@ template <class T>
 // The same towards a point before the antenna whose squares are normal numbers, in its geometry or the
 // plugin's.
 template <class T>
-[[nodiscard]] T pattern_amplitude(const LaneBeam<T>& beam, T x, T y, T z, T planar, T range) {
-  const bool published = beam.formula == DetectionFormula::plugin_as_published;
-  const T w_v = published ? half_tangent_squared(x, z, std::sqrt(x * x + z * z), beam.null_v.wide)
-                          : half_tangent_squared(planar, z, range, beam.null_v.wide);
-  return beam_amplitude(beam, half_tangent_squared(x, y, planar, beam.null_h.wide), w_v);
-}
-
-template <class T>
-[[nodiscard]] T pattern_amplitude(const LaneBeam<T>& beam, T x, T y, T z) {
-  const T planar_squared = x * x + y * y;
-  const T range = std::sqrt(planar_squared + z * z);
-  if (beam.form == BeamForm::algebraic) return x / range;
-  return pattern_amplitude(beam, x, y, z, std::sqrt(planar_squared), range);
+[[nodiscard]] T pattern_amplitude(const LaneBeam<T>& beam, T x_of_point, T y_of_point, T z_of_point) {
+  const double x = x_of_point, y = y_of_point, z = z_of_point;
+  const double planar = std::sqrt(x * x + y * y);
+  const double range = std::sqrt(x * x + y * y + z * z);
+  if (beam.form == BeamForm::algebraic) return static_cast<T>(x / range);
+  const HalfTangent<double> h = half_tangent(x, y, planar, beam.null_h.wide);
+  const HalfTangent<double> v = beam.formula == DetectionFormula::plugin_as_published
+                                    ? half_tangent(x, z, std::sqrt(x * x + z * z), beam.null_v.wide)
+                                    : half_tangent(planar, z, range, beam.null_v.wide);
+  if constexpr (sizeof(T) == sizeof(double))
+    return beam_amplitude(beam, h, v);
+  else
+    return beam_amplitude(beam, narrowed(h), narrowed(v));
 }
 
 // Whether squares of the coordinates leave the range of normal numbers.
@@ -108,11 +124,9 @@ template <class T>
       reach *= x * x;
     }
   } else {
-    const T planar = std::sqrt(planar_squared);
-    range = std::sqrt(range_squared);
-    const T amplitude = pattern_amplitude(beam, x, y, z, planar, range);
+    range = std::sqrt(published ? planar_squared : range_squared);
+    const T amplitude = pattern_amplitude(beam, x, y, z);
     if (!(amplitude > T(0))) return T(0);
-    if (published) range = planar;
     reach *= beam.formula == DetectionFormula::paper ? amplitude : amplitude * amplitude;
   }
   return detection_of_exponent(range * beam.exponent_per_m / reach, beam.most_exponent);

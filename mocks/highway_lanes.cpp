@@ -63,20 +63,55 @@ struct Loop {
     return hn::Div(hn::Mul(hn::Mul(cube, upright_squared), k), hn::Mul(r0, hn::Mul(xx, xx)));
   }
 
-  HWY_INLINE V to_null(V w, const LaneNull<T>& null) const {
-    return hn::Add(hn::NegMulAdd(w, hn::Set(d, null.slope), hn::Set(d, null.w)), hn::Set(d, null.w_rest));
-  }
+  // A number and what rounding took from it. Doubles do without.
+  struct Pair {
+    V value;
+    V rest;
+  };
+  static constexpr bool kCarries = sizeof(T) < sizeof(double);
 
+  // sum + leg^2, exact but for the rounding of the rest (Knuth's sum, Dekker's product by fma).
+  HWY_INLINE Pair plus_square(Pair sum, V leg) const {
+    if constexpr (!kCarries) return {hn::MulAdd(leg, leg, sum.value), sum.rest};
+    const V square = hn::Mul(leg, leg);
+    const V total = hn::Add(sum.value, square);
+    const V part = hn::Sub(total, sum.value);
+    const V lost = hn::Add(hn::Sub(sum.value, hn::Sub(total, part)), hn::Sub(square, part));
+    return {total, hn::Add(lost, hn::Add(hn::MulSub(leg, leg, square), sum.rest))};
+  }
+  HWY_INLINE Pair root(Pair square) const {
+    const V value = hn::Sqrt(square.value);
+    if constexpr (!kCarries) return {value, square.rest};
+    const V remainder = hn::Add(hn::NegMulAdd(value, value, square.value), square.rest);
+    return {value, hn::Div(remainder, hn::Add(value, value))};
+  }
   // tan^2 of half the angle between the leg `along` and the hypotenuse.
-  HWY_INLINE V half_tangent_squared(V along, V across, V hypotenuse, bool wide) const {
-    const V sum = hn::Add(hypotenuse, along);
-    if (wide) return hn::Div(hn::Sub(hypotenuse, along), sum);
-    const V q = hn::Div(across, sum);
-    return hn::Mul(q, q);
+  HWY_INLINE Pair half_tangent(Pair along, V across, Pair hypotenuse, bool wide) const {
+    const V sum = hn::Add(hypotenuse.value, along.value);
+    if constexpr (!kCarries) {
+      if (wide) return {hn::Div(hn::Sub(hypotenuse.value, along.value), sum), along.rest};
+      const V q = hn::Div(across, sum);
+      return {hn::Mul(q, q), along.rest};
+    }
+    const V sum_rest =
+        hn::Add(hn::Sub(along.value, hn::Sub(sum, hypotenuse.value)), hn::Add(along.rest, hypotenuse.rest));
+    const V inverse = hn::Div(hn::Set(d, T(1)), sum);
+    const V q = hn::Mul(across, inverse);
+    const V q_rest = hn::Mul(hn::NegMulAdd(q, sum_rest, hn::NegMulAdd(q, sum, across)), inverse);
+    const V w = hn::Mul(q, q);
+    return {w, hn::MulAdd(hn::Add(q, q), q_rest, hn::MulSub(q, q, w))};
+  }
+  HWY_INLINE V to_null(const Pair& at, const LaneNull<T>& null) const {
+    const V slope = hn::Set(d, null.slope);
+    V rest = hn::Set(d, null.w_rest);
+    if constexpr (kCarries) rest = hn::NegMulAdd(at.rest, slope, rest);
+    return hn::Add(hn::NegMulAdd(at.value, slope, hn::Set(d, null.w)), rest);
   }
 
   template <BeamForm kForm>
-  HWY_INLINE V amplitude(V w_h, V w_v, M& seen) const {
+  HWY_INLINE V amplitude(const Pair& at_h, const Pair& at_v, M& seen) const {
+    const V w_h = at_h.value;
+    const V w_v = at_v.value;
     seen = hn::And(
         seen, hn::And(hn::Lt(w_h, hn::Set(d, beam.null_h.end)), hn::Lt(w_v, hn::Set(d, beam.null_v.end))));
     V h = hn::Set(d, beam.series_h[beam.terms - 1]);
@@ -86,7 +121,7 @@ struct Loop {
       v = hn::MulAdd(v, w_v, hn::Set(d, beam.series_v[i]));
     }
     if constexpr (kForm == BeamForm::cosine) {
-      return hn::Mul(hn::Mul(h, v), hn::Mul(to_null(w_h, beam.null_h), to_null(w_v, beam.null_v)));
+      return hn::Mul(hn::Mul(h, v), hn::Mul(to_null(at_h, beam.null_h), to_null(at_v, beam.null_v)));
     }
     const V depth = hn::Max(hn::Add(h, v), hn::Zero(d));
     seen = hn::And(seen, hn::Le(depth, hn::Set(d, kDeepest<T>)));
@@ -94,18 +129,23 @@ struct Loop {
   }
 
   template <BeamForm kForm, DetectionFormula kFormula>
-  HWY_INLINE V by_series(V x, V y, V z, V planar_squared, V range_squared, V k, V r0, M& seen) const {
-    const V planar = hn::Sqrt(planar_squared);
-    V range = hn::Sqrt(range_squared);
-    const V w_h = half_tangent_squared(x, y, planar, beam.null_h.wide);
-    V w_v;
+  HWY_INLINE V by_series(V x, V y, V z, V k, V r0, M& seen) const {
+    const V zero = hn::Zero(d);
+    const Pair ahead{x, zero};
+    const Pair ahead_squared = plus_square({zero, zero}, x);
+    const Pair planar_squared = plus_square(ahead_squared, y);
+    const Pair planar = root(planar_squared);
+    const Pair at_h = half_tangent(ahead, y, planar, beam.null_h.wide);
+    V range = planar.value;
+    V g;
     if constexpr (kFormula == DetectionFormula::plugin_as_published) {
-      range = planar;
-      w_v = half_tangent_squared(x, z, hn::Sqrt(hn::MulAdd(z, z, hn::Mul(x, x))), beam.null_v.wide);
+      const Pair upright = root(plus_square(ahead_squared, z));
+      g = amplitude<kForm>(at_h, half_tangent(ahead, z, upright, beam.null_v.wide), seen);
     } else {
-      w_v = half_tangent_squared(planar, z, range, beam.null_v.wide);
+      const Pair whole = root(plus_square(planar_squared, z));
+      g = amplitude<kForm>(at_h, half_tangent(planar, z, whole, beam.null_v.wide), seen);
+      range = whole.value;
     }
-    V g = amplitude<kForm>(w_h, w_v, seen);
     if constexpr (kFormula != DetectionFormula::paper) g = hn::Mul(g, g);
     return hn::Div(hn::Mul(range, k), hn::Mul(r0, g));
   }
@@ -128,7 +168,7 @@ struct Loop {
     if constexpr (kForm == BeamForm::algebraic)
       t = algebraic<kFormula>(x, z, planar_squared, range_squared, k, r0);
     else
-      t = by_series<kForm, kFormula>(x, y, z, planar_squared, range_squared, k, r0, seen);
+      t = by_series<kForm, kFormula>(x, y, z, k, r0, seen);
     // Rounding may leave a pattern just short of its null below 0.
     seen = hn::And(seen, hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Set(d, beam.most_exponent))));
     if (hn::AllFalse(d, seen)) return hn::Zero(d);

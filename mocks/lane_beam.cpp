@@ -34,7 +34,7 @@ LaneNull<T> null_for(double width_rad, bool cosine) {
   if (!cosine) return null;
   const BeamNull exact = null_of_beam(width_rad);
   if (width_rad < hal::kPi / 2.0) null.end = static_cast<T>(exact.w);
-  null.wide = exact.w > 0.6;
+  null.wide = sizeof(T) == sizeof(double) && exact.w > 0.6;  // floats carry what rounding takes
   if (!has_factor(width_rad)) return null;
   null.slope = T(1);
   null.w = static_cast<T>(exact.w);
