@@ -133,10 +133,12 @@ void SlotTagField::leave_port(double at_s) {
 
 void SlotTagField::begin_round() {
   const double t_s = next_s_;
+  const double latest_s = schedule_.latest_end_s();
+  if (t_s + slots_.round_overhead_s >= latest_s) return leave_port(latest_s);  // no slot would fit
   // Rounds are whole: a visit ends with the one that is nearest to what the schedule wants, but the latest
   // end, a fixed dwell's included, is kept to the instant.
   const double wanted_s = schedule_.dwell().end_s;
-  const double early_s = wanted_s < schedule_.latest_end_s() ? 0.5 * idle_round_s_ : 0.0;
+  const double early_s = wanted_s < latest_s ? 0.5 * idle_round_s_ : 0.0;
   if (!first_round_ && t_s + early_s >= wanted_s) return leave_port(t_s);
   first_round_ = false;
   if (t_s >= next_hop_s_) {

@@ -58,8 +58,8 @@ void SlotTagField::draw_participants(double listened_s) {
 // once with chance 1 - exp(-rate L).
 void SlotTagField::draw_thinned(const Audible& audible, double listened_s) {
   const double rate_per_s = audible.total_per_s / kLeastUnderstood;
-  for (double at_s = random_.exponential() / rate_per_s; at_s < listened_s;
-       at_s += random_.exponential() / rate_per_s) {
+  double at_s = 0.0;
+  while ((at_s += random_.exponential() / rate_per_s) < listened_s) {
     ++statistics_.draws;
     const NearbyTags::Candidate& candidate = nearby_.pick(audible, random_.uniform());
     const double keep_below = random_.uniform() * candidate.bound_per_s / kLeastUnderstood;

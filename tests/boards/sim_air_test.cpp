@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "mocks/gen2_field.hpp"
 #include "mocks/gen2_slot_field.hpp"
@@ -11,22 +12,35 @@
 namespace forager::boards {
 namespace {
 
-TEST(SimAir, ASceneFliesAtSlotLevelMuchAsAtRoundLevel) {
-  // One seed of the T, one of the small aisle: the models share world, policy and vehicle, not their draws.
-  for (Scene scene : {published_scene("4A"), test_scene("small")}) {
-    SCOPED_TRACE(scene.name);
-    const FlownMission round = fly(scene);
-    scene.world.air.model = AirModel::slot;
-    const FlownMission slot = fly(scene);
-    EXPECT_EQ(slot.summary.end, flight::EndReason::no_new_tags) << slot.summary.detail;
-    EXPECT_EQ(slot.summary.crashes, 0U);
-    EXPECT_EQ(slot.summary.reader_losses, 0U);
-    EXPECT_NEAR(slot.coverage(), round.coverage(), 0.04);
-    const auto reads_per_s = [](const FlownMission& m) {
-      return static_cast<double>(m.summary.reads) / m.summary.sim_time_s;
-    };
-    EXPECT_NEAR(reads_per_s(slot) / reads_per_s(round), 1.0, 0.25) << reads_per_s(slot);
+TEST(SimAir, APublishedSceneFliesAtSlotLevel) {
+  Scene scene = published_scene("4A");
+  scene.world.air.model = AirModel::slot;
+  std::vector<double> coverage;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const FlownMission mission = fly(scene, {.seed = seed});
+    EXPECT_EQ(mission.summary.end, flight::EndReason::no_new_tags) << mission.summary.detail;
+    EXPECT_EQ(mission.summary.crashes, 0U);
+    EXPECT_EQ(mission.summary.reader_losses, 0U);
+    coverage.push_back(mission.coverage());
   }
+  EXPECT_GE(median(coverage), 0.9);
+}
+
+TEST(SimAir, AMissionAtSlotLevelComesToWhatItComesToAtRoundLevel) {
+  // A scene complete in itself. The models share world, policy and vehicle, not their draws: medians.
+  Scene scene = test_scene("small");
+  std::vector<double> coverage[2];
+  std::vector<double> reads_per_s[2];
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    for (const AirModel model : {AirModel::round, AirModel::slot}) {
+      scene.world.air.model = model;
+      const FlownMission mission = fly(scene, {.seed = seed});
+      const std::size_t i = model == AirModel::slot ? 1 : 0;
+      coverage[i].push_back(mission.coverage());
+      reads_per_s[i].push_back(static_cast<double>(mission.summary.reads) / mission.summary.sim_time_s);
+    }
+  EXPECT_NEAR(median(coverage[1]), median(coverage[0]), 0.03);
+  EXPECT_NEAR(median(reads_per_s[1]) / median(reads_per_s[0]), 1.0, 0.25);
 }
 
 TEST(SimAir, TheSceneDecidesTheModel) {
