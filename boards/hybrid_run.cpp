@@ -108,6 +108,7 @@ class Runner {
       const double now_s = hal::to_seconds(now);
       rig_->advance(now);
       judge_.look(*rig_);
+      strike(now);
       mode_.update(now);
       keep_track(now_s);
       if (!mode_.done()) ended_s = now_s;
@@ -124,6 +125,13 @@ class Runner {
   }
 
  private:
+  void strike(Instant now) {
+    if (options_.fault == DriveFault::none || struck_ || mode_.status().phase != flight::HybridPhase::flying)
+      return;
+    if (hal::norm(rig_->body().velocity_world_m_s) < 0.5 * scene_->flight_m_s) return;
+    struck_ = true;
+    rig_->strike(options_.fault, now);
+  }
   void keep_track(double now_s) {
     if (!options_.keep_track || now_s < next_track_s_) return;
     next_track_s_ = now_s + kTrackEvery;
@@ -140,6 +148,7 @@ class Runner {
   HybridResult result_;
   Judge judge_;
   double next_track_s_ = 0.0;
+  bool struck_ = false;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace forager::boards {
 
 struct HybridRunOptions {
   std::uint64_t seed = 1;
+  DriveFault fault = DriveFault::none;  // strikes in the air, in the middle of the hop
   bool keep_track = false;
   hal::Journal* journal = nullptr;  // may be null
 };

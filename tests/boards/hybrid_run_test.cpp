@@ -62,6 +62,19 @@ TEST(HybridRun, EqualSeedsGiveEqualBytes) {
   EXPECT_GT(first.count("hybrid "), 8U);
 }
 
+TEST(HybridRun, LandsWhenThePoseIsLostInTheAir) {
+  const HybridScene scene = hop_scene();
+  for (const DriveFault fault : {DriveFault::pose_lost, DriveFault::pose_silent}) {
+    const auto result = run_hybrid(scene, {.seed = 2, .fault = fault});
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->end, flight::HybridEnd::pose_lost) << result->detail;
+    EXPECT_TRUE(result->stands) << "down, disarmed and still";
+    EXPECT_FALSE(result->hung);
+    EXPECT_TRUE(result->braked_in_air);
+    EXPECT_LT(result->flown_m, 2.5) << "it does not fly on";
+  }
+}
+
 TEST(HybridRun, RollsRoundWhatLeavesRoom) {
   auto scene = changed("max = [3.2, 2.5]", "max = [3.2, -0.2]");
   ASSERT_TRUE(scene) << hal::describe(scene.error());
