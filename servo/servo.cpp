@@ -43,8 +43,11 @@ hal::Result<> Servo::move(double target, hal::Instant now) {
   last_ = now;
   const double step = config_.slew_per_s * hal::to_seconds(passed);
   const double wanted = std::clamp(target, map_.first(), map_.last());
-  const double next = std::isnan(step) ? place_ : std::clamp(wanted, place_ - step, place_ + step);
-  return send(next);
+  if (std::isnan(step)) return send(place_);  // no limit, and no time: still where it is taken to be
+  // Sums of steps miss the target by rounding; what is nearer than that is there.
+  constexpr double kThere = 1e-9;
+  if (std::abs(wanted - place_) <= step + kThere * (map_.last() - map_.first())) return send(wanted);
+  return send(wanted > place_ ? place_ + step : place_ - step);
 }
 
 hal::Result<> Servo::jump(double target, hal::Instant now) {
