@@ -65,9 +65,11 @@ class Runner {
     if (!stale) loop_.go(now + kGo);
     loop_.update(now);
     if (!result_.struck_s) return;
-    const bool forbids = !loop_.interlocks().may_thrust() || loop_.status().stopped_from ||
-                         loop_.steer().phase() == servo::SteerPhase::holding;
-    if (forbids) judge_.detected(hal::to_seconds(now));
+    // Where the answer to the fault is to wait and not to end, waiting is what shows that it was noticed.
+    const bool waits = options_.fault == DriveFault::pose_lost || options_.fault == DriveFault::pose_silent ||
+                       options_.fault == DriveFault::command_stale;
+    const bool ended = loop_.status().stopped_from && loop_.status().end != flight::DriveEnd::arrived;
+    if (ended || (waits && !loop_.interlocks().may_thrust())) judge_.detected(hal::to_seconds(now));
   }
 
   void strike(Instant now) {

@@ -16,6 +16,8 @@ constexpr std::string_view kSource = "drive";
 
 constexpr hal::Duration kMeasured = std::chrono::milliseconds(70);  // two frames of the camera
 
+constexpr hal::Duration kRecovered = std::chrono::milliseconds(250);
+
 bool rolls(servo::SteerPhase phase) {
   return phase == servo::SteerPhase::releasing || phase == servo::SteerPhase::driving ||
          phase == servo::SteerPhase::coasting;
@@ -113,9 +115,9 @@ void DriveLoop::judge(hal::Instant now) {
     status_.speed_m_s = estimate.speed_m_s();
     status_.yaw_rate_rad_s = estimate.yaw_rate_rad_s();
     status_.corridor_m = mission_.corridor.distance_m(status_.pose_world.position);
-    // Brakes are not judged by dead reckoning.
-    if (estimate.pose_age(now) <= kMeasured)
-      brakes_.observe({status_.speed_m_s, status_.yaw_rate_rad_s, now});
+    // Brakes are not judged by dead reckoning, nor while the estimate still recovers from it.
+    if (estimate.pose_age(now) > kMeasured) measured_from_ = now;
+    if (now - measured_from_ >= kRecovered) brakes_.observe({status_.speed_m_s, status_.yaw_rate_rad_s, now});
   }
   const AutopilotState& autopilot = autopilot_->state();
   was_armed_ = was_armed_ || (autopilot.armed && status_.phase == DrivePhase::driving);

@@ -177,6 +177,7 @@ class DriveLoop final : public hal::Halt {
   bool was_armed_ = false;
   bool blocked_ = false;  // something stands in the way
   hal::Instant ask_again_at_;
+  hal::Instant measured_from_;  // poses have come without a gap since
 };
 
 }  // namespace forager::flight

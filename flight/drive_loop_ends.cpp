@@ -49,18 +49,16 @@ void DriveLoop::wait_for_links(hal::Instant now) {
     return autopilot_->request_guided(now);
   }
   if (!waited(config_.start_timeout, now)) return;
-  const InterlockRule* lost = interlocks_.first_lost();
-  const bool known = lost != nullptr && lost->to_arm;
-  stop(known ? end_of(lost->interlock) : DriveEnd::refused,
-       known ? lost->why : std::string_view("the autopilot does not know where it is"), now);
+  for (const InterlockRule& rule : kInterlockTable)
+    if (rule.to_arm && !interlocks_.holds(rule.interlock)) return stop(end_of(rule.interlock), rule.why, now);
+  stop(DriveEnd::refused, "the autopilot does not know where it is", now);
 }
 
 bool DriveLoop::refused(std::string_view what, hal::Instant now) {
   if (halt_asked_) {
     stop(DriveEnd::halted, "asked to stop before the start", now);
-  } else if (!interlocks_.may_arm() && interlocks_.first_lost() != nullptr) {
-    const InterlockRule& lost = *interlocks_.first_lost();
-    stop(end_of(lost.interlock), lost.why, now);
+  } else if (const InterlockRule* lost = interlocks_.first_latched(); lost != nullptr) {
+    stop(end_of(lost->interlock), lost->why, now);
   } else if (autopilot_->request_state() == RequestState::refused) {
     stop(DriveEnd::refused, autopilot_->request_detail(), now);
   } else if (waited(config_.start_timeout, now)) {
@@ -72,7 +70,8 @@ bool DriveLoop::refused(std::string_view what, hal::Instant now) {
 }
 
 void DriveLoop::wait_for_mode(hal::Instant now) {
-  if (refused("the autopilot did not go into GUIDED", now) || !autopilot_->state().guided) return;
+  if (refused("the autopilot did not go into GUIDED", now)) return;
+  if (!autopilot_->state().guided || !interlocks_.may_arm()) return;
   enter(DrivePhase::arming, now);
   autopilot_->request_arm(now);
 }

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kStandingSpeed = 0.03;    // m/s
 constexpr double kStandingYawRate = 0.04;  // rad/s
-constexpr double kPitchGain = 4.0;         // 1/s, speed by pitch
+constexpr hal::Duration kSticks = std::chrono::milliseconds(800);
+constexpr double kPitchGain = 4.0;  // 1/s, speed by pitch
 
 // Towards zero, and not beyond it within an update.
 double slowing(double speed, double brake) {
@@ -176,9 +177,11 @@ BrakeSteer::Aim BrakeSteer::aim_at(const SteerStep& step) const {
 
 // The pitch that gives the wanted speed: the force goes with its sine, `push` being what the fixed pitch
 // gives net of `coast`.
-double BrakeSteer::pitch_for_speed(double wanted, double speed, double push, double coast) const {
+double BrakeSteer::pitch_for_speed(double wanted, double speed, double push, double coast,
+                                   hal::Instant now) const {
   const double gross = push + coast;
-  if (!(gross > 0.0)) return config_.pitch_rad;
+  const bool sticks = stuck_since_ && now - *stuck_since_ > kSticks;  // more friction than it knows of
+  if (!(gross > 0.0) || sticks) return config_.pitch_rad;
   const double share = std::clamp((kPitchGain * (wanted - speed) + coast) / gross, 0.0, 1.0);
   return std::asin(share * std::sin(config_.pitch_rad));
 }

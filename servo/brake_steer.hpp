@@ -120,7 +120,8 @@ class BrakeSteer {
   [[nodiscard]] bool may_move(hal::Instant now);
   void run(hal::Instant now);
   [[nodiscard]] SteerOutput output(hal::Instant now) const;
-  [[nodiscard]] double pitch_for_speed(double wanted, double speed, double push, double coast) const;
+  [[nodiscard]] double pitch_for_speed(double wanted, double speed, double push, double coast,
+                                       hal::Instant now) const;
 
   // brake_steer_plan.cpp
   void settle(hal::Instant now);

@@ -59,7 +59,7 @@ void BrakeSteer::turn(hal::Instant now) {
     const double wanted = std::min(
         config_.max_yaw_rate_rad_s,
         std::sqrt(0.25 * arrive * arrive + 2.0 * learnt_.turn_coast_rad_s2 * std::max(0.0, to_go - stop)));
-    pitch_command_ = pitch_for_speed(wanted, rate, learnt_.turn_push_rad_s2, learnt_.turn_coast_rad_s2);
+    pitch_command_ = pitch_for_speed(wanted, rate, learnt_.turn_push_rad_s2, learnt_.turn_coast_rad_s2, now);
   }
   if (to_go <= stop + kTurnDone || rate > 1.5 * config_.max_yaw_rate_rad_s) {
     stop_mark_ = {now, 0.0, rate, estimate_.pose(), true};
@@ -97,7 +97,7 @@ void BrakeSteer::drive(hal::Instant now) {
     const double wanted = std::min(
         config_.max_speed_m_s,
         std::sqrt(0.25 * arrive * arrive + 2.0 * learnt_.coast_m_s2 * std::max(0.0, here.ahead_m - stop)));
-    pitch_command_ = pitch_for_speed(wanted, speed, learnt_.push_m_s2, learnt_.coast_m_s2);
+    pitch_command_ = pitch_for_speed(wanted, speed, learnt_.push_m_s2, learnt_.coast_m_s2, now);
   }
   if (phase_ == SteerPhase::releasing) {
     if (now - since_ >= config_.release) enter(SteerPhase::driving, now);

@@ -9,6 +9,7 @@
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/cmd_bench.hpp"
+#include "tools/cmd_brake.hpp"
 #include "tools/cmd_calibrate.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_esc.hpp"
@@ -42,6 +43,7 @@ int run_command(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_report_command(app, exit_code);
   add_emulate_command(app, exit_code);
+  add_brake_command(app, exit_code);
   add_esc_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
