@@ -13,6 +13,7 @@
 #include "tools/cmd_calibrate.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_esc.hpp"
+#include "tools/cmd_generate.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
@@ -49,6 +50,7 @@ int run_command(int argc, char** argv) {
   add_stress_command(app, exit_code);
   add_reproduce_command(app, exit_code);
   add_calibrate_command(app, exit_code);
+  add_generate_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
