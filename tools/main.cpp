@@ -11,6 +11,7 @@
 #include "tools/cmd_bench.hpp"
 #include "tools/cmd_brake.hpp"
 #include "tools/cmd_calibrate.hpp"
+#include "tools/cmd_drive.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_esc.hpp"
 #include "tools/cmd_generate.hpp"
@@ -43,6 +44,7 @@ int run_command(int argc, char** argv) {
   int exit_code = kExitDone;
   add_run_command(app, exit_code);
   add_report_command(app, exit_code);
+  add_drive_command(app, exit_code);
   add_emulate_command(app, exit_code);
   add_brake_command(app, exit_code);
   add_esc_command(app, exit_code);
