@@ -44,8 +44,8 @@ struct FieldStatistics {
 // way (tags out of range, behind, silent, unchanged geometry) has a switch each in AirParameters.
 //
 // Refinements of the protocol (slots, collisions, a fixed Q) are not modelled: q is ignored.
-// world (fixed) and body must outlive the field. Once it has been in the densest part of the world it
-// allocates in radio_on() only. Memory: about 90 bytes a tag.
+// world (fixed) and body must outlive the field. Allocates at construction and in radio_on() only, as long as
+// fewer than 65536 tags are in range. Memory: about 90 bytes a tag.
 class SimTagField final : public TagField {
  public:
   // Parameters must have passed validate().

@@ -48,7 +48,8 @@ AirLink::AirLink(const World& world, std::vector<AntennaMounting> antennas, cons
       air_(air),
       seed_(seed),
       fade_(air.rician_k_db, air.fade_length_m, seed),
-      hazard_table_(air) {
+      hazard_table_(air),
+      beam_bound_(air.pattern) {
   hal::Random random = hal::Random::stream(seed, 1);
   spread_db_.reserve(world.tags.size());
   r0_m_.reserve(world.tags.size());
@@ -85,13 +86,15 @@ TagLink AirLink::link_above(const AntennaView& antenna, std::uint32_t tag, doubl
   link.range_m = std::sqrt(Axes::dot(offset, offset));
   const double r0_m = r0_m_[tag] * antenna.reach;
   if (!(link.range_m <= air_.power_up_limit * r0_m * fade_.max_amplitude())) return link;
-  link.pattern_power = air_.pattern.power(antenna.axes_world.from_parent(offset));
-  if (link.pattern_power <= 0.0) return link;
-  if (rate_per_s > 0.0) {
+  const hal::Vec3 place = antenna.axes_world.from_parent(offset);
+  const auto too_seldom = [&](double pattern_power) {
     const double r0_at_best_m = r0_m * fade_.max_amplitude();
-    const double u = normalised_range(link.range_m, r0_at_best_m, link.pattern_power, air_.pattern_exponent);
-    if (hazard_table_.bound(u) <= rate_per_s) return link;
-  }
+    const double u = normalised_range(link.range_m, r0_at_best_m, pattern_power, air_.pattern_exponent);
+    return hazard_table_.bound(u) <= rate_per_s;
+  };
+  if (rate_per_s > 0.0 && too_seldom(beam_bound_.bound(place, link.range_m))) return link;
+  link.pattern_power = air_.pattern.power(place);
+  if (link.pattern_power <= 0.0 || (rate_per_s > 0.0 && too_seldom(link.pattern_power))) return link;
   link.amplitude = fade_.amplitude(tag, antenna.port, antenna.position_world);
   if (air_.occlusion_db > 0.0)
     link.amplitude *= amplitude_of(-air_.occlusion_db *

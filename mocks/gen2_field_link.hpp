@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hal/pose.hpp"
+#include "mocks/gen2_beam_bound.hpp"
 #include "mocks/gen2_field_fade.hpp"
 #include "mocks/gen2_field_parameters.hpp"
 #include "mocks/gen2_hazard_table.hpp"
@@ -75,6 +76,7 @@ class AirLink {
   std::uint64_t seed_;  // of the axes of the tags
   FrozenFade fade_;
   HazardTable hazard_table_;
+  BeamBound beam_bound_;
   double longest_arm_m_ = 0.0;
   std::vector<double> spread_db_;
   std::vector<double> r0_m_;  // of each tag at 30 dBm without fade

@@ -10,6 +10,8 @@ namespace {
 // Fewer tags than this are all looked at: that is faster than finding out which.
 constexpr std::size_t kFewTags = 2048;
 constexpr double kCell_m = 2.0;
+// Room for as many tags in range is there from the start.
+constexpr std::size_t kUsually = std::size_t{1} << 16U;
 constexpr double kOneCell_m = 1e12;
 constexpr double kFarthest_m = 1e12;
 // Nearer in plan than this beyond the margin, a tag belongs to no direction.
@@ -35,6 +37,10 @@ std::size_t sector_of(double x, double y) {
 NearbyTags::NearbyTags(const World& world, const AirLink& link, const AirParameters& air)
     : link_(&link), pattern_(air.pattern), use_grid_(air.skip_by_grid) {
   build_layers(world, air.spread_db);
+  const std::size_t usual = std::min(world.tags.size(), kUsually);
+  found_.reserve(usual);
+  candidates_.reserve(usual);
+  guide_.reserve(usual);
 }
 
 // Median and better by whole standard deviations: a layer is searched as far as its best tag reaches.

@@ -8,11 +8,18 @@
 namespace forager::mocks {
 namespace {
 
+constexpr std::size_t kUsually = std::size_t{1} << 16U;
+constexpr std::size_t kMostPorts = 32;
 constexpr double kPeriod_s = 0.5;
 constexpr double kMove_m = 0.05;
 constexpr double kTurn_rad = 0.035;
 
 }  // namespace
+
+PoweredTags::PoweredTags(std::size_t tags) : has_power_(tags, 0) {
+  powered_.reserve(std::min(tags, kUsually));
+  views_.reserve(kMostPorts);
+}
 
 void PoweredTags::singulated(std::uint32_t tag) {
   if (has_power_[tag] != 0) return;

@@ -17,7 +17,7 @@ namespace forager::mocks {
 // hazard cut counts as unpowered.
 class PoweredTags {
  public:
-  explicit PoweredTags(std::size_t tags) : has_power_(tags, 0) {}
+  explicit PoweredTags(std::size_t tags);
 
   // The tag was singulated in a session that keeps its flag while powered.
   void singulated(std::uint32_t tag);
