@@ -71,7 +71,7 @@ enum class EscState : std::uint8_t {
 // outputs leave (docs/safety.md): the ESCs stop by themselves 131 ms after the pulses end.
 //
 // Every transition and every change of a pulse is noted in the journal: "front-left 1060.0 us". update()
-// allocates only when it notes.
+// allocates only when it notes, and while an output fails.
 class EscBank final : public hal::Halt {
  public:
   static constexpr std::size_t kMost = 16;
