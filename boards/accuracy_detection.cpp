@@ -83,7 +83,7 @@ struct Pairs {
 };
 
 std::shared_ptr<Pairs> pairs_around(std::uint64_t seed, std::size_t count) {
-  const auto pairs = std::make_shared<Pairs>();
+  auto pairs = std::make_shared<Pairs>();
   hal::Random random(seed);
   const auto fill = [&](std::vector<float>& f32, std::vector<double>& f64) {
     for (std::size_t i = 0; i < count; ++i) {

@@ -70,8 +70,8 @@ TEST(AccuracyTable, JsonRowsAreWhole) {
 TEST(AccuracyTable, TextHasAHeadingForEachQuestionAndMarksTheFront) {
   const std::string text = accuracy_text(with_pareto_fronts(some_rows()));
   EXPECT_THAT(text, HasSubstr("PD  [against truth, \"all of it\"]\n"));
-  EXPECT_THAT(text, HasSubstr("  * fast         1 ns    1.00e-07    2.00e-07\n"));
-  EXPECT_THAT(text, HasSubstr("    slow         9 ns"));
+  EXPECT_THAT(text, HasSubstr("  * fast          1 ns    1.00e-07    2.00e-07\n"));
+  EXPECT_THAT(text, HasSubstr("    slow          9 ns"));
 }
 
 TEST(AccuracyTable, ThePageIsWellFormedAndFetchesNothing) {
