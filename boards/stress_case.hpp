@@ -32,6 +32,11 @@ class Worst {
   double worst_ = 0.0;
 };
 
+// from, from + step, ... and from, from * factor, ... to `to` at most. Counted in whole numbers: a sum of
+// steps drifts.
+[[nodiscard]] std::vector<double> evenly(double from, double to, double step);
+[[nodiscard]] std::vector<double> geometrically(double from, double to, double factor);
+
 // Every case of every topic, in a fixed order. To add one: boards/stress_<topic>.cpp with
 // std::vector<StressCase> stress_<topic>(), declared here and named in boards/stress_case.cpp.
 [[nodiscard]] std::vector<StressCase> stress_cases();

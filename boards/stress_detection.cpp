@@ -89,7 +89,7 @@ StressCase curve_ends() {
 // Between a last normal number and nothing: no way may come out above it, or negative.
 StressCase curve_denormal() {
   Worst worst;
-  for (double u = 640.0; u < 690.0; u += 0.01) {
+  for (const double u : evenly(640.0, 690.0, 0.01)) {
     const Wide exact = u * 1.585 < 990.0 ? exact_curve(u * u) : Wide(0.0);
     for (const double p : {mocks::detection_probability(u), mocks::detection_probability_compensated_u(u)})
       worst.add(p >= 0.0 ? std::abs(p - exact.rounded()) : kNaN);
@@ -119,7 +119,7 @@ StressCase boresight() {
   Worst worst;
   for (const double width : {kWidth, hal::kPi / 2.0, hal::kPi}) {
     const DetectionKernel kernel = kernel_of(width);
-    for (double range = 1e-9; range < 1e9; range *= 1.7) {
+    for (const double range : geometrically(1e-9, 1e9, 1.7)) {
       const double exact = exact_detection({range, 0.0, 0.0}, {width, width, kR0_m});
       const Answers a = ask(kernel, {range, 0.0, 0.0});
       for (const double p : {a.reference, a.scalar, a.vector}) worst.near(p, exact);
@@ -155,7 +155,7 @@ StressCase nulls() {
 StressCase beyond_the_null() {
   Worst worst;
   const DetectionKernel kernel = kernel_of(kWidth);
-  for (double angle = 70.001; angle <= 180.0; angle += 0.25)
+  for (const double angle : evenly(70.001, 180.0, 0.25))
     for (const double side : {-1.0, 1.0}) {
       const double a = side * hal::deg_to_rad(angle);
       for (const hal::Vec3 p :
@@ -187,7 +187,7 @@ StressCase any_width_of_vectors() {
 
 StressCase both_ends_of_the_logarithm() {
   Worst worst;
-  for (double u = 1e-6; u < 600.0; u *= 1.1) {
+  for (const double u : geometrically(1e-6, 600.0, 1.1)) {
     const double again = mocks::answer_probability(mocks::expected_answers(u), 1.0);
     worst.relative(again,
                    exact_curve(u * u).rounded() > 0.0 ? mocks::detection_probability_compensated_u(u) : 0.0);

@@ -121,7 +121,7 @@ StressCase quaternions() {
       off = std::max(off, hal::norm(mocks::axes_of(a).to_parent(axis) - mocks::axes_of(b).to_parent(axis)));
     return off;
   };
-  for (double yaw = -180.0; yaw <= 180.0; yaw += 22.5)
+  for (const double yaw : evenly(-180.0, 180.0, 22.5))
     for (const double pitch : {-90.0, -89.9999, -45.0, 0.0, 30.0, 89.9999, 90.0})
       for (const double roll : {-180.0, -90.0, 0.0, 1e-6, 135.0, 180.0}) {
         mocks::BodyState body;
@@ -166,7 +166,7 @@ StressCase pulses_of_the_pca9685() {
       worst.must(chip.update(now).has_value());
     }
     const double tick_us = 1e-3 * static_cast<double>(chip_side.period().count()) / 4096.0;
-    for (double pulse_us = 900.0; pulse_us <= 1900.0; pulse_us += 13.7) {
+    for (const double pulse_us : evenly(900.0, 1900.0, 13.7)) {
       worst.must(chip.channel(3).set_pulse(hal::from_seconds(pulse_us * 1e-6)).has_value());
       const auto made = chip_side.pulse(3);
       // In half ticks; what integer nanoseconds round comes on top.
