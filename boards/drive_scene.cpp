@@ -15,6 +15,8 @@ using hal::deg_to_rad;
 
 constexpr double kPathSpacing = 0.025;  // m, thesis sec. 6.6.2: what the planner delivers
 
+constexpr double kLongestWay_m = 1000.0;
+
 struct RangeKey {
   std::string_view name;
   DriveSpan fallback;
@@ -67,6 +69,14 @@ void read_way(ConfigReader& table, DriveScene& scene) {
                                                       corners.back().y - corners.front().y) > 0.2;
   if (!moves) {
     table.complain("path", "does not lead anywhere", "Give at least two corners, 0.2 m apart.");
+    return;
+  }
+  double length = 0.0;
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    length += std::hypot(corners[i].x - corners[i - 1].x, corners[i].y - corners[i - 1].y);
+  if (!(length <= kLongestWay_m)) {
+    table.complain("path", fmt::format("is {:.0f} m long", length),
+                   fmt::format("Give a way of at most {:.0f} m.", kLongestWay_m));
     return;
   }
   scene.path = rounded_path(corners, corner_m, kPathSpacing);

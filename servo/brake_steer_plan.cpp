@@ -113,6 +113,7 @@ void BrakeSteer::finish(hal::Instant now) {
 void BrakeSteer::start_turn(Brake side, double angle_rad, hal::Instant now) {
   side_ = side;
   turn_left_ = angle_rad;
+  checking_speed_ = false;
   ++stats_.turns;
   stop_mark_.set = false;
   enter(SteerPhase::turning, now);

@@ -67,6 +67,7 @@ TEST(DriveScene, SaysWhereAMistakeIs) {
   } cases[] = {
       {"[drive]\nname = \"x\"\n", "path"},
       {"[drive]\nname = \"x\"\npath = [[0.0, 0.0]]\n", "does not lead anywhere"},
+      {"[drive]\nname = \"x\"\npath = [[0.0, 0.0], [1e9, 0.0]]\n", "at most 1000 m"},
       {"[drive]\nname = \"x\"\npath = [[0.0, 0.0], [2.0, 0.0]]\nspeed = 3\n", "speed"},
       {"[drive]\nname = \"x\"\npath = [[0.0, 0.0], [2.0, 0.0]]\n[ranges]\nfriction = [0.9, 0.1]\n",
        "friction"},

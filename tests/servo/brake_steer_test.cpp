@@ -9,6 +9,7 @@
 
 #include "mocks/rolling_vehicle.hpp"
 #include "mocks/sim_pose_source.hpp"
+#include "tests/reader/allocation_count.hpp"
 
 namespace forager::servo {
 namespace {
@@ -219,6 +220,16 @@ TEST(BrakeSteer, SpeedByPitchKeepsThrustAndArrivesAsWell) {
   EXPECT_LT(rig.error(2.0, 0.6), 0.15);
   EXPECT_TRUE(varied) << "the pitch sets the speed";
   EXPECT_LT(fastest, config.max_speed_m_s + 0.1);
+}
+
+TEST(BrakeSteer, CallsNoAllocator) {
+  Rig rig;
+  rig.begin({{0.7, 0.0}, {1.3, 0.4}, {2.0, 0.6}});
+  rig.run(1.0);
+  const std::uint64_t before = test::allocation_count();
+  while (!rig.steer.done() && rig.now < Instant{120s}) rig.tick();
+  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(rig.steer.phase(), SteerPhase::arrived);
 }
 
 TEST(BrakeSteer, EveryOutputRunsOutByItself) {
