@@ -295,23 +295,5 @@ void detection_curve_lanes(const float* x, std::size_t count, float* probabiliti
   HWY_DYNAMIC_DISPATCH(curve_f32)(x, count, probabilities);
 }
 
-std::vector<std::string> lane_targets() {
-  hwy::SetSupportedTargetsForTest(0);
-  std::vector<std::string> names;
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) names.emplace_back(hwy::TargetName(target));
-  return names;
-}
-
-bool use_lane_target(std::string_view name) {
-  hwy::SetSupportedTargetsForTest(0);
-  std::int64_t wanted = 0;
-  for (const auto target : hwy::SupportedAndGeneratedTargets())
-    if (name == hwy::TargetName(target)) wanted = target;
-  if (wanted == 0 && !name.empty()) return false;
-  hwy::SetSupportedTargetsForTest(wanted);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return true;
-}
-
 }  // namespace forager::mocks
 #endif  // HWY_ONCE
