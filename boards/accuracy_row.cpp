@@ -7,12 +7,8 @@ namespace forager::boards {
 std::vector<AccuracyRow> accuracy_rows(const AccuracyOptions& options) {
   using Topic = std::vector<AccuracyRow> (*)(const AccuracyOptions&);
   constexpr Topic kTopics[] = {
-      accuracy_detection,
-      accuracy_sweep,
-      accuracy_air,
-      accuracy_guard,
-      accuracy_planner,
-      accuracy_relative_pose,
+      accuracy_detection, accuracy_sweep,   accuracy_air,
+      accuracy_guard,     accuracy_planner, accuracy_relative_pose,
   };
   std::vector<AccuracyRow> rows;
   for (const Topic topic : kTopics) {
