@@ -30,8 +30,8 @@ void SimPca9685::power_cycle() {
   registers_[kSubAdr1 + 1] = 0xE4;
   registers_[kSubAdr1 + 2] = 0xE8;
   registers_[kAllCallAdr] = 0xE0;
-  for (int channel = 0; channel < kChannels; ++channel)
-    registers_[static_cast<std::size_t>(kLed0 + 4 * channel + kOffHigh)] = kFull;
+  for (std::size_t channel = 0; channel < kChannels; ++channel)
+    registers_[kLed0 + 4 * channel + kOffHigh] = kFull;
   registers_[kPreScale] = kPreScaleReset;
   pointer_ = 0;
   stopped_ = false;
@@ -60,7 +60,7 @@ bool SimPca9685::write(std::byte byte) {
   }
   if (!known(pointer_)) return violation(fmt::format("a burst runs on into 0x{:02x}", pointer_));
   if (!store(pointer_, value)) return false;
-  step();
+  next_register();
   return true;
 }
 
@@ -71,12 +71,12 @@ std::optional<std::byte> SimPca9685::read() {
   }
   // ALL_LED registers are write-only and read as zero (table 4).
   const std::uint8_t value = pointer_ >= kAllLed && pointer_ <= kAllLedLast ? 0 : registers_[pointer_];
-  step();
+  next_register();
   return std::byte{value};
 }
 
 // Section 7.3.1.2 and table 4: the pointer moves only with auto-increment, and after LED15_OFF_H comes MODE1.
-void SimPca9685::step() {
+void SimPca9685::next_register() {
   if ((registers_[kMode1] & kAutoIncrement) == 0) return;
   pointer_ = pointer_ == kLedLast ? kMode1 : static_cast<std::uint8_t>(pointer_ + 1);
 }
@@ -122,8 +122,8 @@ bool SimPca9685::store(std::uint8_t address, std::uint8_t value) {
   if (address >= kLed0 && !asleep() && !oscillator_runs())
     violation(fmt::format("register 0x{:02x} before the oscillator has run for 500 us", address));
   if (address >= kAllLed) {
-    for (int channel = 0; channel < kChannels; ++channel)
-      registers_[static_cast<std::size_t>(kLed0 + 4 * channel + (address - kAllLed))] = value;
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      registers_[kLed0 + 4 * channel + address - kAllLed] = value;
     return true;
   }
   registers_[address] = value;

@@ -40,7 +40,7 @@ class SimPca9685 final : public SimI2cDevice {
   [[nodiscard]] static bool known(std::uint8_t address);
   bool store(std::uint8_t address, std::uint8_t value);
   void store_mode1(std::uint8_t value);
-  void step();
+  void next_register();
   [[nodiscard]] bool asleep() const;
   [[nodiscard]] bool oscillator_runs() const;
   bool violation(std::string what);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 
 namespace forager::hal {
@@ -106,7 +107,9 @@ Result<std::unique_ptr<I2c>> open_i2c_dev(const I2cDevConfig& config, Kernel& ke
   const auto steps = std::max<std::int64_t>(
       1, (config.timeout + std::chrono::milliseconds(9)) / std::chrono::milliseconds(10));
   // The argument itself is the number: I2C_TIMEOUT takes it by value, in units of 10 ms.
-  if (const int answer = kernel.ioctl(fd, I2C_TIMEOUT, reinterpret_cast<void*>(steps)); answer < 0)
+  if (const int answer =
+          kernel.ioctl(fd, I2C_TIMEOUT, std::bit_cast<void*>(static_cast<std::intptr_t>(steps)));
+      answer < 0)
     return failure(name, "set the time-out", answer);
   return bus;
 }

@@ -188,7 +188,7 @@ Result<> Group::do_set_period(Duration period) {
       return fail(ErrorCode::invalid_argument, name_, "set period",
                   fmt::format("{} makes a pulse longer than {} ns", channel.name(), period.count()));
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const auto done = channels_[i].set_period(period, "set period");
+    auto done = channels_[i].set_period(period, "set period");
     if (done) continue;
     for (std::size_t k = 0; k < i; ++k) static_cast<void>(channels_[k].set_period(period_, "set period"));
     return done;  // all of them as before
