@@ -143,39 +143,6 @@ class BrakeSteer {
   void learn_stop();
   void learn_rates(hal::Instant now);
 
-  BrakeSteerConfig config_;
-  MotionEstimate estimate_;
-  SteerLearnt learnt_;
-  SteerStats stats_;
-  std::vector<SteerStep> steps_;
-  std::size_t step_ = 0;
-  std::optional<double> goal_heading_rad_;
-  SteerPhase phase_ = SteerPhase::idle;
-  SteerFault fault_ = SteerFault::none;
-  hal::Instant since_;      // of the phase
-  hal::Instant leg_since_;  // of the present step
-  hal::Instant valid_until_{hal::Duration::min()};
-  std::optional<hal::Instant> still_since_;
-  std::optional<hal::Instant> stuck_since_;  // pushed, and still about where it was then
-  hal::Pose stuck_at_;
-  int spins_ = 0;  // in a row
-  std::optional<hal::Instant> runaway_since_;
-
-  Brake side_ = Brake::none;  // of the present turn
-  double turn_left_ = 0.0;    // towards side_, at the last update
-  bool to_heading_ = false;   // the turn is for the goal's heading, not for a step
-  SteerStep drive_to_;        // the step, or a point on the way to being able to turn
-  bool roll_first_ = false;
-  bool checking_speed_ = false;  // brakes against running too fast
-  double leg_miss_m_ = 0.0;      // what this drive may pass its target at
-  Brake dab_ = Brake::none;      // touched now, until dab_until_
-  hal::Instant dab_until_;
-  hal::Instant dab_judged_;  // when its effect shows
-  double dab_from_ = 0.0;    // yaw rate before it
-  bool dab_open_ = false;    // not judged yet
-  int tries_ = 0;            // at the present step
-  double pitch_command_ = 0.0;
-
   struct Mark {  // for learning from what follows
     hal::Instant at;
     double speed = 0.0;
@@ -183,9 +150,43 @@ class BrakeSteer {
     hal::Pose pose;
     bool set = false;
   };
+
+  BrakeSteerConfig config_;
+  MotionEstimate estimate_;
+  SteerLearnt learnt_;
+  SteerStats stats_;
+  std::vector<SteerStep> steps_;
+  std::size_t step_ = 0;
+  std::optional<double> goal_heading_rad_;
+  hal::Instant since_;      // of the phase
+  hal::Instant leg_since_;  // of the present step
+  hal::Instant valid_until_{hal::Duration::min()};
+  std::optional<hal::Instant> still_since_;
+  std::optional<hal::Instant> stuck_since_;  // pushed, and still about where it was then
+  std::optional<hal::Instant> runaway_since_;
+  hal::Pose stuck_at_;
   Mark stop_mark_;  // when the brakes were told to lock
   Mark rate_mark_;  // when thrust went on or off
-  std::uint32_t resets_ = 0;
+
+  double turn_left_ = 0.0;   // towards side_, at the last update
+  SteerStep drive_to_;       // the step, or a point on the way to being able to turn
+  double leg_miss_m_ = 0.0;  // what this drive may pass its target at
+  double pitch_command_ = 0.0;
+  hal::Instant dab_until_;
+  hal::Instant dab_judged_;  // when its effect shows
+  double dab_from_ = 0.0;    // yaw rate before it
+
+  std::uint32_t resets_ = 0;  // of the estimate, as of the last update
+  int spins_ = 0;             // in a row
+  int tries_ = 0;             // at the present step
+  SteerPhase phase_ = SteerPhase::idle;
+  SteerFault fault_ = SteerFault::none;
+  Brake side_ = Brake::none;  // of the present turn
+  Brake dab_ = Brake::none;   // touched now, until dab_until_
+  bool to_heading_ = false;   // the turn is for the goal's heading, not for a step
+  bool roll_first_ = false;
+  bool checking_speed_ = false;  // brakes against running too fast
+  bool dab_open_ = false;        // not judged yet
 };
 
 }  // namespace forager::servo
