@@ -112,7 +112,7 @@ std::optional<double> Reproduction::rms_points() const {
 std::vector<std::string> Reproduction::complaints(const ReproductionBounds& bounds) const {
   std::vector<std::string> out;
   const auto rms = rms_points();
-  if (rms && *rms > bounds.rms_points)
+  if (rms && !(*rms <= bounds.rms_points))
     out.push_back(fmt::format("root mean square {:.2f} points, above {}", *rms, bounds.rms_points));
   const auto check_time = [&](std::string_view what, double share) {
     if (!(std::abs(share - 1.0) <= bounds.duration_share))
@@ -122,7 +122,7 @@ std::vector<std::string> Reproduction::complaints(const ReproductionBounds& boun
   for (const ReproducedRun& run : runs) {
     if (!run.published.in_fit) continue;
     const double bound = run.published.stigmergic ? bounds.stigmergic_points : bounds.each_points;
-    if (const auto difference = run.difference_points(); difference && std::abs(*difference) > bound)
+    if (const auto difference = run.difference_points(); difference && !(std::abs(*difference) <= bound))
       out.push_back(
           fmt::format("{} is {:+.1f} points off, beyond {}", run.published.run, *difference, bound));
     if (const auto share = run.duration_ratio())
