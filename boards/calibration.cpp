@@ -73,6 +73,11 @@ class Fitter {
     return likelihood_->log_likelihood(parameters_at(at));
   }
   [[nodiscard]] int evaluations() const { return evaluations_; }
+  [[nodiscard]] std::vector<double> tag_values(Point at) {
+    for (std::size_t i = 0; i < kParameters; ++i) at[i] = std::clamp(at[i], kLowest[i], kHighest[i]);
+    ++evaluations_;
+    return likelihood_->log_likelihoods(parameters_at(at));
+  }
   // What the first simplex spans from now on.
   void set_steps(const Point& steps) { steps_ = steps; }
 
@@ -144,6 +149,50 @@ Point along_ridge(const Fitter::Best& best, const Bend& bend, std::size_t which,
   return at;
 }
 
+// The matrix of a bend, turned round; not meant for nearly singular ones, which the clamp on its elements
+// keeps away for two parameters and the determinant's floor for three.
+std::array<Point, kParameters> inverse_of(const std::array<Point, kParameters>& m) {
+  std::array<Point, kParameters> out{};
+  double det = 0.0;
+  for (std::size_t j = 0; j < 3; ++j)
+    det += m[0][j] * (m[1][(j + 1) % 3] * m[2][(j + 2) % 3] - m[1][(j + 2) % 3] * m[2][(j + 1) % 3]);
+  det = std::max(det, 0.01);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      out[j][i] = (m[(i + 1) % 3][(j + 1) % 3] * m[(i + 2) % 3][(j + 2) % 3] -
+                   m[(i + 1) % 3][(j + 2) % 3] * m[(i + 2) % 3][(j + 1) % 3]) /
+                  det;
+  return out;
+}
+
+// How many times wider than the likelihood says an estimate really scatters, as a variance (Godambe's
+// sandwich, tags as the independent units): places that share part of a fade count as independent in the
+// likelihood, but the scores of the tags show how much they are not. At least 1.
+Point excess_variance(Fitter& fitter, const Fitter::Best& best, const Bend& bend) {
+  std::array<std::vector<double>, kParameters> scores;  // per unit of the bend
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    Point up = best.at;
+    Point down = best.at;
+    up[i] += 0.3 * bend.unit[i];
+    down[i] -= 0.3 * bend.unit[i];
+    const auto above = fitter.tag_values(up);
+    const auto below = fitter.tag_values(down);
+    for (std::size_t tag = 0; tag < above.size(); ++tag) scores[i].push_back((above[tag] - below[tag]) / 0.6);
+  }
+  const auto inverse = inverse_of(bend.matrix);
+  Point excess{};
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    double variance = 0.0;
+    for (std::size_t tag = 0; tag < scores[0].size(); ++tag) {
+      double shift = 0.0;
+      for (std::size_t j = 0; j < kParameters; ++j) shift += inverse[i][j] * scores[j][tag];
+      variance += shift * shift;
+    }
+    excess[i] = std::clamp(variance / std::max(inverse[i][i], 1e-6), 1.0, 25.0);
+  }
+  return excess;
+}
+
 // What the profile likelihood loses, twice, where one parameter is held at a value.
 double profile_loss(Fitter& fitter, const Fitter::Best& best, const Bend& bend,
                     std::array<bool, kParameters> held, std::size_t which, double value) {
@@ -161,10 +210,10 @@ double profile_loss(Fitter& fitter, const Fitter::Best& best, const Bend& bend,
 // linear in the parameter, so the secant is quick; at the limit of what is looked at the interval stays open.
 double interval_end(Fitter& fitter, const Fitter::Best& best, const Bend& bend,
                     const std::array<bool, kParameters>& held, std::size_t which, double direction,
-                    bool& open) {
+                    double excess, bool& open) {
   const double limit = direction < 0.0 ? kLowest[which] : kHighest[which];
   const double room = std::abs(limit - best.at[which]);
-  const double wanted = std::sqrt(kChiSquare95);
+  const double wanted = std::sqrt(kChiSquare95 * excess);
   double away = 2.5 * bend.unit[which];
   double before = 0.0;
   double loss_before = 0.0;
@@ -280,6 +329,7 @@ hal::Result<Calibration> calibrate(const Recording& recording, const Scene& scen
   const Point given{0.0, options.spread_db.value_or(0.0), options.rician_k_db.value_or(0.0)};
   Fitter::Best best = fit_all(fitter, cells, held, given);
   const Bend bend = polish(fitter, best, held);
+  const Point excess = excess_variance(fitter, best, bend);
   Calibration result;
   for (std::size_t i = 0; i < kParameters; ++i) {
     FittedParameter p;
@@ -288,8 +338,8 @@ hal::Result<Calibration> calibrate(const Recording& recording, const Scene& scen
     p.value = p.low = p.high = best.at[i];
     p.held = held[i];
     if (!held[i]) {
-      p.low = interval_end(fitter, best, bend, held, i, -1.0, p.open_low);
-      p.high = interval_end(fitter, best, bend, held, i, 1.0, p.open_high);
+      p.low = interval_end(fitter, best, bend, held, i, -1.0, excess[i], p.open_low);
+      p.high = interval_end(fitter, best, bend, held, i, 1.0, excess[i], p.open_high);
       if (p.open_low && p.open_high)
         return refuse(p.name, "the likelihood does not depend on it: its information is singular",
                       "Record more, from more places.");
@@ -321,9 +371,10 @@ hal::Result<std::array<double, 3>> profile_losses(const Recording& recording, co
   Fitter fitter(likelihood);
   Fitter::Best best = fit_all(fitter, cells, {}, {});
   const Bend bend = polish(fitter, best, {});
+  const Point excess = excess_variance(fitter, best, bend);
   std::array<double, 3> losses{};
   for (std::size_t i = 0; i < kParameters; ++i)
-    losses[i] = profile_loss(fitter, best, bend, {}, i, point_of(truth)[i]);
+    losses[i] = profile_loss(fitter, best, bend, {}, i, point_of(truth)[i]) / excess[i];
   return losses;
 }
 

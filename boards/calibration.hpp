@@ -54,7 +54,8 @@ struct CalibrationOptions {
 
 // Fits R0, spread and fade to a recording by maximum likelihood (CalibrationLikelihood); antennas, pattern,
 // T0 and power-up limit are the scene's. Intervals are profile likelihoods: where twice the loss of
-// log-likelihood, the other parameters fitted anew, reaches 3.84.
+// log-likelihood, the other parameters fitted anew, reaches 3.84 times
+// what the estimate scatters more than the likelihood says (sandwich variance over tags, at least 1).
 //
 // Errors: refused, when the recording cannot tell a parameter, naming it and why: too few reads or tags, no
 // poses, all ranges the same, everything heard or nothing, a vehicle that never left the fade it started in,
@@ -63,8 +64,8 @@ struct CalibrationOptions {
                                                  const CalibrationOptions& options = {});
 
 // Twice the loss of log-likelihood against the best fit when one parameter (0 R0, 1 spread, 2 K) is fixed at
-// a value and the others are fitted: below 3.84 its 95 % interval holds the value. For tests of coverage.
-// Errors: those of calibrate.
+// a value and the others are fitted, divided by the same excess: below 3.84 its 95 % interval holds the
+// value. For tests of coverage. Errors: those of calibrate.
 [[nodiscard]] hal::Result<std::array<double, 3>> profile_losses(const Recording& recording,
                                                                 const Scene& scene,
                                                                 const CalibrationParameters& truth);

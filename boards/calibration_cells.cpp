@@ -1,8 +1,11 @@
 #include "boards/calibration_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 
 #include "boards/reproduce.hpp"
 #include "boards/sim_air.hpp"
@@ -24,6 +27,8 @@ struct Slice {
 // Where the vehicle stayed about the same for some slices.
 struct Stop {
   hal::Pose pose;
+  std::size_t begin = 0;  // slices
+  std::size_t end = 0;
   std::size_t cell = 0;  // stops of one cell share their fade
 };
 
@@ -76,19 +81,23 @@ class Slicer {
   }
 
   void find_stops() {
-    hal::Vec3 cell_at;
+    std::map<std::array<long, 3>, std::size_t> places;
     for (std::size_t i = 0; i < slices_.size(); ++i) {
       const hal::Pose pose = pose_at(start_s() + (static_cast<double>(i) + 0.5) * slicing_.slice_s);
-      const bool first = stops_.empty();
-      if (first || norm(pose.position - stops_.back().pose.position) > slicing_.rest_m ||
+      if (stops_.empty() || norm(pose.position - stops_.back().pose.position) > slicing_.rest_m ||
           std::abs(hal::angle_difference(pose.yaw_rad, stops_.back().pose.yaw_rad)) > slicing_.rest_rad) {
-        const bool elsewhere = first || norm(pose.position - cell_at) > slicing_.fade_length_m;
-        if (elsewhere) cell_at = pose.position;
-        const std::size_t cell = first ? 0 : stops_.back().cell + (elsewhere ? 1 : 0);
-        stops_.push_back({pose, cell});
+        // Whoever comes back to a place finds the same fade.
+        const auto tile = [&](double metres) { return std::lround(metres / slicing_.fade_length_m); };
+        const std::array<long, 3> place{tile(pose.position.x), tile(pose.position.y), tile(pose.position.z)};
+        stops_.push_back({pose, i, i, places.emplace(place, places.size()).first->second});
       }
+      stops_.back().end = i + 1;
       slices_[i].stop = stops_.size() - 1;
     }
+    by_cell_.resize(stops_.size());
+    std::iota(by_cell_.begin(), by_cell_.end(), std::size_t{0});
+    std::stable_sort(by_cell_.begin(), by_cell_.end(),
+                     [&](std::size_t a, std::size_t b) { return stops_[a].cell < stops_[b].cell; });
   }
 
   // Bursts first, then even shares of what is left.
@@ -156,18 +165,15 @@ class Slicer {
     for (std::size_t port = 0; port < ports_.size(); ++port) {
       bool open = false;
       std::size_t cell = 0;
-      std::size_t slice = 0;
-      while (slice < slices_.size()) {
-        const std::size_t stop = slices_[slice].stop;
-        const std::size_t first = slice;
-        while (slice < slices_.size() && slices_[slice].stop == stop) ++slice;
-        const double range = range_m(tag, port, stop);
+      for (const std::size_t at : by_cell_) {
+        const Stop& stop = stops_[at];
+        const double range = range_m(tag, port, at);
         if (!(range <= far_m_)) continue;
-        if (!open || stops_[stop].cell != cell) cells.cell_begin.push_back(cells.bins.size());
+        if (!open || stop.cell != cell) cells.cell_begin.push_back(cells.bins.size());
         open = true;
-        cell = stops_[stop].cell;
-        cells.bins.push_back(bin_of(tag, port, first, slice, range));
-        cells.slices += static_cast<double>(slice - first);
+        cell = stop.cell;
+        cells.bins.push_back(bin_of(tag, port, stop.begin, stop.end, range));
+        cells.slices += static_cast<double>(stop.end - stop.begin);
         cells.seen_slices += cells.bins.back().seen;
       }
     }
@@ -210,6 +216,7 @@ class Slicer {
   std::vector<double> bearings_;
   std::vector<Slice> slices_;
   std::vector<Stop> stops_;
+  std::vector<std::size_t> by_cell_;
   std::vector<std::uint64_t> seen_;
   std::vector<double> heard_m_;
   double far_m_ = 0.0;

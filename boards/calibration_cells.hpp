@@ -37,11 +37,11 @@ struct CalibrationCells {
 // How long the radio listens to a port is not in the recording. A burst of reads on one port without a pause
 // above `burst_gap_s` is time spent there; the rest of each slice is shared evenly by the ports.
 struct CalibrationSlicing {
-  double slice_s = 0.5;
+  double slice_s = 0.2;
   double burst_gap_s = 0.06;
   double rest_m = 0.02;  // moved by less: still the same geometry
   double rest_rad = 0.035;
-  double fade_length_m = 0.13;  // beyond: another fade; most of the 0.17 m over which it is forgotten
+  double fade_length_m = 0.12;  // places nearer than this share their fade
 };
 
 // The antennas are those of the scene's read plan, on the vehicle's centre. Tags never in front of an antenna

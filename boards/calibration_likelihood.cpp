@@ -144,6 +144,12 @@ double CalibrationLikelihood::cell_log(std::size_t cell, double reach_db) const 
 }
 
 double CalibrationLikelihood::log_likelihood(const CalibrationParameters& p) const {
+  double sum = 0.0;
+  for (const double tag : log_likelihoods(p)) sum += tag;
+  return sum;
+}
+
+std::vector<double> CalibrationLikelihood::log_likelihoods(const CalibrationParameters& p) const {
   const auto fades = fades_of(p.rician_k_db);
   const double r0_db = 20.0 * std::log10(p.r0_m);
   double strongest_db = 0.0;
@@ -151,7 +157,8 @@ double CalibrationLikelihood::log_likelihood(const CalibrationParameters& p) con
   std::array<double, kFades> fade_logs{};
   const std::array<Node, kTagNodes> nodes = tag_nodes();
   std::array<double, kTagNodes> tag_logs{};
-  double sum = 0.0;
+  std::vector<double> tags;
+  tags.reserve(cells_->tag_begin.size());
   for (std::size_t tag = 0; tag + 1 < cells_->tag_begin.size(); ++tag) {
     if (cells_->tag_begin[tag] == cells_->tag_begin[tag + 1]) continue;
     for (std::size_t q = 0; q < kTagNodes; ++q) {
@@ -164,9 +171,9 @@ double CalibrationLikelihood::log_likelihood(const CalibrationParameters& p) con
         tag_logs[q] += log_mean(fade_logs, [&](std::size_t f) { return fades[f].weight; });
       }
     }
-    sum += log_mean(tag_logs, [&](std::size_t q) { return nodes[q].weight; });
+    tags.push_back(log_mean(tag_logs, [&](std::size_t q) { return nodes[q].weight; }));
   }
-  return sum;
+  return tags;
 }
 
 std::vector<double> CalibrationLikelihood::expected_seen(const CalibrationParameters& p) const {

@@ -23,6 +23,8 @@ class CalibrationLikelihood {
   CalibrationLikelihood(const CalibrationCells& cells, double t0_s, double power_up_limit);
 
   [[nodiscard]] double log_likelihood(const CalibrationParameters& p) const;
+  // Tag by tag.
+  [[nodiscard]] std::vector<double> log_likelihoods(const CalibrationParameters& p) const;
   // Expected number of slices in which bin i is seen, over all bins: for residuals.
   [[nodiscard]] std::vector<double> expected_seen(const CalibrationParameters& p) const;
 
