@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -91,6 +92,43 @@ Result<std::string> slurp(const std::string& path) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
+// Where a TOML string that starts at `at` ends, quotes included; the end of its line or of the text if it is
+// not closed.
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string three(3, quote);
+  const bool multi_line = text.substr(at, 3) == three;
+  for (std::size_t i = at + (multi_line ? 3 : 1); i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (multi_line && text.substr(i, 3) == three) {
+      i += 3;
+      for (int more = 0; more < 2 && i < text.size() && text[i] == quote; ++more) ++i;
+      return i;
+    } else if (!multi_line && (text[i] == quote || text[i] == '\n')) {
+      return i + 1;
+    }
+  }
+  return text.size();
+}
+
+// The first byte outside ASCII that is neither in a string nor in a comment; npos if there is none. TOML 1.0
+// allows none there, and toml++ 3.3 does not survive some of them.
+std::size_t stray_byte(std::string_view text) {
+  std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  while (at < text.size()) {
+    const char c = text[at];
+    if (static_cast<unsigned char>(c) >= 0x80) return at;
+    if (c == '#')
+      at = std::min(text.find('\n', at), text.size());
+    else if (c == '"' || c == '\'')
+      at = end_of_string(text, at);
+    else
+      ++at;
+  }
+  return std::string_view::npos;
+}
+
 // Takes the key `base` out of a table; empty when there is none.
 Result<std::string> take_base(ConfigNode& node) {
   auto* members = std::get_if<ConfigNode::Table>(&node.value);
@@ -143,6 +181,15 @@ std::string_view ConfigNode::kind() const {
 }
 
 Result<ConfigNode> parse_config(std::string_view text, const std::string& file) {
+  if (const std::size_t stray = stray_byte(text); stray != std::string_view::npos) {
+    const std::string_view before = text.substr(0, stray);
+    const std::size_t line_start = before.rfind('\n') + 1;  // 0 without one
+    return fail(
+        ErrorCode::invalid_argument, file,
+        fmt::format("line {}, column {}", std::ranges::count(before, '\n') + 1, stray - line_start + 1),
+        "a character outside ASCII, neither in a string nor in a comment",
+        "Put it in quotes, or take it out.");
+  }
   try {
     return convert(toml::parse(text, file), file, 0);
   } catch (const toml::parse_error& error) {

@@ -27,6 +27,21 @@ TEST(Config, SyntaxErrorNamesFileLineAndColumn) {
   EXPECT_THAT(describe(node.error()), HasSubstr("test.toml: line 2, column"));
 }
 
+TEST(Config, LettersOutsideAsciiBelongInStringsAndComments) {
+  for (const std::string text : {"# 50 \u00B5s\na = 'caf\u00E9'\n",
+                                 "\xEF\xBB\xBF"
+                                 "a = \"\\\"\u00E9\" # \u00E9",
+                                 "a = \"\"\"x\"\"\"\"\nb = \"\u00E9\"", "a = '''\n\u00E9'\u00E9'''\n"})
+    EXPECT_TRUE(parse_config(text, "test.toml").has_value()) << text;
+  for (const std::string text : {"a = 1\n  caf\u00E9 = 2\n", "a = '\u00B5'\nb \u00B5", "a = 1\n  \xFF",
+                                 "a = \"\"\"x\"\"\"\"\n  \u00E9 = \"y\""}) {
+    const auto node = parse_config(text, "test.toml");
+    ASSERT_FALSE(node) << text;
+    EXPECT_THAT(describe(node.error()), HasSubstr("test.toml: line 2, column")) << text;
+    EXPECT_THAT(describe(node.error()), HasSubstr("outside ASCII")) << text;
+  }
+}
+
 TEST(Config, MissingFileSaysWhichAndWhatToDo) {
   const auto node = load_config("no/such/scene.toml");
   ASSERT_FALSE(node);

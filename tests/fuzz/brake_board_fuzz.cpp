@@ -11,9 +11,6 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace forager;
-  // toml++ 3.3 itself runs into __builtin_unreachable() for some letters outside ASCII in a bare word.
-  for (std::size_t i = 0; i < size; ++i)
-    if (data[i] >= 0x80) return 0;
   const auto node =
       boards::parse_config(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz.toml");
   if (!node) return describe(node.error()).empty() ? std::abort(), 0 : 0;
