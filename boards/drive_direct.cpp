@@ -31,6 +31,7 @@ void DirectAutopilot::update(hal::Instant now) {
     request_ = flight::RequestState::accepted;
   }
   state_.armed = armed_;
+  if (pilot_) state_.guided = false;
   if (now >= next_attitude_) {
     next_attitude_ = now + kAttitudePeriod;
     heard_ = now;

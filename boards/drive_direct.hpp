@@ -24,6 +24,8 @@ class DirectAutopilot final : public flight::DriveAutopilot {
   // The emulated side: what the autopilot does with what it was told. Call it also when nobody commands.
   void run(hal::Instant now);
   void cut_link(bool cut) { cut_ = cut; }
+  void take_over() { pilot_ = true; }       // a pilot leaves GUIDED
+  void arm_by_hand() { armed_ = true; }     // somebody else arms it
   void tell_stop() { stop_heard_ = true; }  // a ground station does
 
   [[nodiscard]] double thrust() const { return armed_ ? thrust_ : 0.0; }
@@ -76,6 +78,7 @@ class DirectAutopilot final : public flight::DriveAutopilot {
   double pitch_ = 0.0;
   bool armed_ = false;
   bool cut_ = false;
+  bool pilot_ = false;
   bool stop_heard_ = false;
   hal::Instant heard_{hal::Instant::min()};
   hal::Instant next_attitude_{hal::Instant::min()};

@@ -44,9 +44,10 @@ std::vector<servo::PathPose> rounded_path(std::span<const DrivePoint> corners, d
     const double length = gap(line[i], line[i + 1]);
     if (!(length > 0.0)) continue;
     yaw = std::atan2(line[i + 1].y - line[i].y, line[i + 1].x - line[i].x);
-    for (; left < length; left += spacing_m) {
+    while (left < length) {
       const DrivePoint at = between(line[i], line[i + 1], left / length);
       path.push_back({at.x, at.y, yaw});
+      left += spacing_m;
     }
     left -= length;
   }

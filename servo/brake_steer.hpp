@@ -130,7 +130,7 @@ class BrakeSteer {
   void start_turn(Brake side, double angle_rad, hal::Instant now);
   void next_step(hal::Instant now);
   void start_drive(const SteerStep& to, double miss_m, hal::Instant now);
-  void count_try(hal::Instant now);
+  void count_try();
 
   // brake_steer_motion.cpp
   void turn(hal::Instant now);

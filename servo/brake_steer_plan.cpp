@@ -23,13 +23,12 @@ void BrakeSteer::settle(hal::Instant now) {
   plan(now);
 }
 
-void BrakeSteer::count_try(hal::Instant now) {
-  static_cast<void>(now);
+void BrakeSteer::count_try() {
   if (++tries_ > config_.most_tries) fail(SteerFault::missed);
 }
 
 void BrakeSteer::plan(hal::Instant now) {
-  if (roll_first_) roll_first_ = false;
+  roll_first_ = false;
   Aim here = aim_at(steps_[step_]);
   // A step that is near enough, or just behind, is done.
   while (!last_step() && (here.distance_m < config_.step_accept_m ||
@@ -44,7 +43,7 @@ void BrakeSteer::plan(hal::Instant now) {
         here.distance_m <= 0.7 * config_.goal_margin_m && (std::abs(here.bearing_rad) > 0.7 || tries_ > 2);
     if (near || good) return finish(now);
   }
-  count_try(now);
+  count_try();
   if (done()) return;
 
   // Its way bends: aim half the bend to the other side.
@@ -100,7 +99,7 @@ void BrakeSteer::finish(hal::Instant now) {
     // Turning by `off` about either wheel carries the middle forward by r |off|.
     const double moved = std::hypot(here.ahead_m - config_.half_track_m * std::abs(off), here.left_m);
     if (moved < 0.85 * config_.goal_margin_m) {
-      count_try(now);
+      count_try();
       to_heading_ = true;
       return start_turn(off > 0.0 ? Brake::left : Brake::right, std::abs(off), now);
     }
