@@ -41,7 +41,7 @@ struct MavlinkConfig {
   hal::Duration pose_timeout = 500ms;  // position and attitude no older than this
   hal::Duration setpoint_interval = 100ms;
   hal::Duration attitude_interval = 20ms;  // of attitude and thrust
-  hal::Duration vision_interval = 20ms;  // at least; ArduPilot drops what comes faster than 50 Hz
+  hal::Duration vision_interval = 20ms;    // at least; ArduPilot drops what comes faster than 50 Hz
 
   hal::Duration command_timeout = 1s;  // until an unanswered command is sent again
   int command_tries = 5;

@@ -54,8 +54,9 @@ struct AirParameters {
   double patience_median_s = 0.018;
   double patience_log_sigma = 0.8;
   double max_dwell_s = 1.5;
-  double settle_s = 0.001;           // from switching to the first possible reply
-  // round_parameters() (mocks/gen2_slot_parameters.hpp) derives both from the link; these are of no certain one.
+  double settle_s = 0.001;  // from switching to the first possible reply
+  // round_parameters() (mocks/gen2_slot_parameters.hpp) derives both from the link; these are of no certain
+  // one.
   double singulation_s = 1.0 / 300;  // one reply at most in this time
   double round_s = 0.014;            // with target AB a tag answers once per round
 
