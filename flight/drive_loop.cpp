@@ -134,9 +134,9 @@ void DriveLoop::judge(hal::Instant now) {
                   : button_failed_ ? "the button cannot be read"
                                    : "told over the link");
   interlocks_.say(Interlock::deadman, deadman_.alive());
-  interlocks_.say(Interlock::autopilot_link,
-                  autopilot.link_up && now - autopilot_->attitude_heard() <= config_.attitude_timeout &&
-                      autopilot_->attitude_heard() != hal::Instant::min());
+  const hal::Instant heard = autopilot_->attitude_heard();
+  const bool fresh = heard != hal::Instant::min() && now - heard <= config_.attitude_timeout;
+  interlocks_.say(Interlock::autopilot_link, autopilot.link_up && fresh);
   interlocks_.say(Interlock::control, ours, autopilot.guided ? "disarmed" : "not in GUIDED");
   interlocks_.say(Interlock::pose, pose_fresh);
   interlocks_.say(Interlock::brakes, brakes_good, brakes.reason);
