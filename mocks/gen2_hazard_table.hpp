@@ -20,8 +20,8 @@ class HazardTable {
   // No link of normalised range u or more has a higher rate, 1/s. 0 beyond last_u() and for NaN.
   [[nodiscard]] double bound(double u) const {
     if (!(u <= last_u_)) return 0.0;
-    const auto step = static_cast<std::size_t>(u * kStepsPerU);
-    return step < rates_.size() ? rates_[step] : tail_;
+    const double step = u * kStepsPerU;
+    return step < static_cast<double>(rates_.size()) ? rates_[static_cast<std::size_t>(step)] : tail_;
   }
   // Beyond it nothing answers (power-up limit), or so seldom that it is not drawn (hazard cut); may be
   // infinite.
