@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -75,8 +76,11 @@ void BrakeOutput::note(hal::Instant now, std::string_view source, std::string_vi
 
 void BrakeOutput::state(hal::Instant now, const servo::BrakePair& pair, const boards::BrakeBench& bench) {
   const servo::BrakeStatus& status = pair.status();
-  const std::string key =
-      fmt::format("{} {} {}", static_cast<int>(status.state), bench.left_text(), bench.right_text());
+  // No finer than an output shows: the last hair of a slew is no news, but where it ends is.
+  const double left = std::round(status.left_fraction * 1e3) / 1e3;
+  const double right = std::round(status.right_fraction * 1e3) / 1e3;
+  const std::string key = fmt::format("{} {} {} {} {}", static_cast<int>(status.state), left, right,
+                                      bench.left_text(), bench.right_text());
   if (key == last_) return;
   last_ = key;
   if (json_)
@@ -84,14 +88,13 @@ void BrakeOutput::state(hal::Instant now, const servo::BrakePair& pair, const bo
                                         {"t_s", hal::to_seconds(now)},
                                         {"state", to_string(status.state)},
                                         {"cut_thrust", status.cut_thrust},
-                                        {"left", status.left_fraction},
-                                        {"right", status.right_fraction},
+                                        {"left", left},
+                                        {"right", right},
                                         {"left_output", bench.left_text()},
                                         {"right_output", bench.right_text()}}
                      .dump());
   print(one_line(fmt::format("{:9.3f} s  {:<9}  left {:4.2f} ({})  right {:4.2f} ({})", hal::to_seconds(now),
-                             to_string(status.state), status.left_fraction, bench.left_text(),
-                             status.right_fraction, bench.right_text())));
+                             to_string(status.state), left, bench.left_text(), right, bench.right_text())));
 }
 
 }  // namespace forager::tools

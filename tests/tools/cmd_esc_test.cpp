@@ -89,7 +89,8 @@ TEST(CmdEsc, CalibratesTheEmulatedOnes) {
 TEST(CmdEsc, StopLeavesStopPulses) {
   const ProgramResult result = run_program({"esc", "stop", "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  for (const auto& motor : lines_of(result.out).back()["motors"]) EXPECT_EQ(motor["pulse_us"], 1000.0);
+  const auto lines = lines_of(result.out);
+  for (const auto& motor : lines.back()["motors"]) EXPECT_EQ(motor["pulse_us"], 1000.0);
 }
 
 TEST(CmdEsc, CtrlCStopsTheMotors) {
