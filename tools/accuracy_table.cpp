@@ -39,6 +39,7 @@ std::string field(const std::string& text) {
 
 std::vector<AccuracyLine> with_pareto_fronts(std::vector<AccuracyRow> rows) {
   std::vector<AccuracyLine> lines;
+  lines.reserve(rows.size());
   for (AccuracyRow& row : rows) lines.push_back({std::move(row)});
   for (AccuracyLine& line : lines)
     line.pareto = line.row.time_ns > 0.0 && std::none_of(lines.begin(), lines.end(), [&](const auto& other) {
