@@ -16,7 +16,7 @@ struct Corner {
 }  // namespace
 
 SimplexResult simplex_search(const std::function<double(const std::vector<double>&)>& f,
-                             std::vector<double> from, const std::vector<double>& step,
+                             const std::vector<double>& from, const std::vector<double>& step,
                              const SimplexOptions& options) {
   const std::size_t n = from.size();
   SimplexResult result;

@@ -19,7 +19,7 @@ struct SimplexResult {
 // without derivatives, for functions with small jumps. `step` spans the first simplex. Not-a-number counts as
 // infinitely bad.
 [[nodiscard]] SimplexResult simplex_search(const std::function<double(const std::vector<double>&)>& f,
-                                           std::vector<double> from, const std::vector<double>& step,
+                                           const std::vector<double>& from, const std::vector<double>& step,
                                            const SimplexOptions& options = {});
 
 }  // namespace forager::boards

@@ -16,7 +16,9 @@ class StigmergicScene : public testing::TestWithParam<const char*> {};
 TEST_P(StigmergicScene, FindsNearlyEveryTagAndComesDownByItself) {
   const auto missions = fly_seeds(published_scene(GetParam()));
   // Stated for the seeds 1 to 20; fewer are flown where a mission takes many times as long.
-  if (missions.size() >= 20) EXPECT_GE(median_coverage(missions), 0.96);
+  if (missions.size() >= 20) {
+    EXPECT_GE(median_coverage(missions), 0.96);
+  }
   std::size_t unlucky = 0;
   for (const FlownMission& mission : missions) {
     SCOPED_TRACE(mission.summary.seed);
