@@ -98,7 +98,7 @@ std::vector<std::uint8_t> SimModbusSlave::execute(std::span<const std::uint8_t> 
   const std::uint16_t from = word(pdu, 1);
   const std::uint16_t value = word(pdu, 3);
   if (function == 3 || function == 4) return read(function, from, value);
-  const std::vector<std::uint8_t> echo(pdu.begin(), pdu.begin() + 5);
+  std::vector<std::uint8_t> echo(pdu.begin(), pdu.begin() + 5);
   if (function == 5) {
     if (coils.count(from) == 0) return exception(function, 2);
     if (value != 0x0000 && value != 0xFF00) return exception(function, 3);

@@ -92,9 +92,9 @@ class Builder {
     const double each = length / racks;
     const double rack = each > 2.0 * plan_.aisle_m && racks > 1.0 ? each - plan_.aisle_m : each;
     const double first = -std::floor(0.5 * count) - 0.5;
-    for (double row = 0.0; row <= count; ++row) {
+    for (int row = 0; row <= static_cast<int>(count); ++row) {
       const double y = (first + row) * pitch();
-      for (double i = 0.0; i < racks; ++i)
+      for (int i = 0; i < static_cast<int>(racks); ++i)
         shelf(from_x + i * each, y - 0.5 * plan_.shelf_depth_m, from_x + i * each + rack,
               y + 0.5 * plan_.shelf_depth_m);
     }
@@ -133,7 +133,7 @@ class Builder {
   void halls() {
     const double count = std::clamp(std::round(std::sqrt(area_m2_) / kHall_m), 2.0, 100.0);
     double x = kEntrance_m;
-    for (double hall = 0.0; hall < count; ++hall) {
+    for (int hall = 0; hall < static_cast<int>(count); ++hall) {
       const std::size_t first = shelves_.size();
       const double end = aisles_from(area_m2_ / count, x);
       double low = 0.0;
@@ -152,8 +152,8 @@ class Builder {
 
   void scattered() {
     const double plots = std::max(1.0, std::round(std::sqrt(area_m2_) / kPlot_m));
-    for (double i = 0.0; i < plots; ++i)
-      for (double j = 0.0; j < plots; ++j) {
+    for (int i = 0; i < static_cast<int>(plots); ++i)
+      for (int j = 0; j < static_cast<int>(plots); ++j) {
         const double length = random_->uniform(1.2, 2.4);
         const double depth = std::min(plan_.shelf_depth_m, 1.2);
         const bool along_x = random_->chance(0.5);
