@@ -41,12 +41,13 @@ double turn_between(const hal::Pose& a, const hal::Pose& b) {
 
 }  // namespace
 
-SimTagField::SimTagField(const World& world, const TrueBody& body, std::vector<AntennaMounting> antennas,
-                         const AirParameters& air, std::uint64_t seed)
+SimTagField::SimTagField(const World& world, const TrueBody& body,
+                         const std::vector<AntennaMounting>& antennas, const AirParameters& air,
+                         std::uint64_t seed)
     : world_(&world),
       body_(&body),
       air_(air),
-      link_(world, std::move(antennas), air, seed),
+      link_(world, antennas, air, seed),
       flags_(world.tags.size(), air, hal::Random::stream(seed, 2).next()),
       schedule_(air, hal::Random::stream(seed, 3).next()),
       random_(hal::Random::stream(seed, 4)),

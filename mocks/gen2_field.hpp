@@ -49,7 +49,7 @@ struct FieldStatistics {
 class SimTagField final : public TagField {
  public:
   // Parameters must have passed validate().
-  SimTagField(const World& world, const TrueBody& body, std::vector<AntennaMounting> antennas,
+  SimTagField(const World& world, const TrueBody& body, const std::vector<AntennaMounting>& antennas,
               const AirParameters& air, std::uint64_t seed);
 
   // Call advance(now) before: what the old settings would still have heard is lost.

@@ -42,7 +42,7 @@ bool crosses(const Box& box, hal::Vec3 from, hal::Vec3 to) {
 
 }  // namespace
 
-AirLink::AirLink(const World& world, std::vector<AntennaMounting> antennas, const AirParameters& air,
+AirLink::AirLink(const World& world, const std::vector<AntennaMounting>& antennas, const AirParameters& air,
                  std::uint64_t seed)
     : world_(&world),
       air_(air),

@@ -36,7 +36,7 @@ struct TagLink {
 // power-up limit.
 class AirLink {
  public:
-  AirLink(const World& world, std::vector<AntennaMounting> antennas, const AirParameters& air,
+  AirLink(const World& world, const std::vector<AntennaMounting>& antennas, const AirParameters& air,
           std::uint64_t seed);
 
   [[nodiscard]] AntennaView view(const hal::Pose& body, const RadioPort& port) const;

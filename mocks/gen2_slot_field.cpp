@@ -24,13 +24,14 @@ constexpr std::uint32_t kChannelSpacing_khz = 600;
 
 }  // namespace
 
-SlotTagField::SlotTagField(const World& world, const TrueBody& body, std::vector<AntennaMounting> antennas,
-                           const AirParameters& air, const SlotParameters& slots, std::uint64_t seed)
+SlotTagField::SlotTagField(const World& world, const TrueBody& body,
+                           const std::vector<AntennaMounting>& antennas, const AirParameters& air,
+                           const SlotParameters& slots, std::uint64_t seed)
     : world_(&world),
       body_(&body),
       air_(air),
       slots_(slots),
-      link_(world, std::move(antennas), air, seed),
+      link_(world, antennas, air, seed),
       flags_(world.tags.size(), air, hal::Random::stream(seed, 2).next()),
       nearby_(world, link_, air),
       powered_(world.tags.size()),

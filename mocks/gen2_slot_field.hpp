@@ -67,7 +67,7 @@ struct SlotStatistics {
 class SlotTagField final : public TagField {
  public:
   // Parameters must have passed validate().
-  SlotTagField(const World& world, const TrueBody& body, std::vector<AntennaMounting> antennas,
+  SlotTagField(const World& world, const TrueBody& body, const std::vector<AntennaMounting>& antennas,
                const AirParameters& air, const SlotParameters& slots, std::uint64_t seed);
 
   // Call advance(now) before: what the old settings would still have heard is lost.
