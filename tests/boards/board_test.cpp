@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
+
+#include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
 namespace {
@@ -16,24 +15,14 @@ using testing::HasSubstr;
 
 class BoardFile : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = std::filesystem::temp_directory_path() / "forager-XXXXXX";
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    path_ = pattern + "/robot.toml";
-  }
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(std::filesystem::path(path_).parent_path(), ignored);
-  }
   hal::Result<Board> board_of(const std::string& text) {
-    std::ofstream(path_) << text;
-    return load_board(path_);
+    return load_board(folder_.write("robot.toml", text));
   }
   std::string complaint(const std::string& text) {
     const auto board = board_of(text);
     return board ? "accepted" : describe(board.error());
   }
-  std::string path_;
+  test::ScratchFolder folder_;
 };
 
 constexpr const char* kNamed = "[board]\nname = \"drone-2\"\n";

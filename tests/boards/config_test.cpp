@@ -1,13 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "boards/config_node.hpp"
 #include "boards/config_reader.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
 namespace {
@@ -95,16 +93,8 @@ TEST(Config, PointsMustHaveTheRightSize) {
 
 class ConfigFiles : public testing::Test {
  protected:
-  ConfigFiles() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "forager-config-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ConfigFiles() override { std::filesystem::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-  std::filesystem::path folder_;
+  std::string write(const std::string& name, const std::string& text) { return folder_.write(name, text); }
+  test::ScratchFolder folder_;
 };
 
 TEST_F(ConfigFiles, BaseIsOverlaidKeyByKeyAndArraysAreReplaced) {

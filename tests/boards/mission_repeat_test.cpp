@@ -1,42 +1,24 @@
 // One seed, one mission: the same decisions, poses, packets and frames, byte for byte.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "tests/boards/flown_mission.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
 namespace {
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class RepeatedMission : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = std::filesystem::temp_directory_path() / "forager-XXXXXX";
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
   // The journal, wire bytes included.
   std::string journal_of(const Scene& scene, std::uint64_t seed, const char* name) {
-    const std::string path = folder_ + "/" + name;
-    (void)fly(scene, {.seed = seed, .journal = path, .wire = true});
-    return bytes_of(path);
+    (void)fly(scene, {.seed = seed, .journal = folder_.file(name), .wire = true});
+    return folder_.read(name);
   }
-  std::string folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(RepeatedMission, TheSameSeedGivesTheSameJournalWithEveryWireByte) {

@@ -1,15 +1,13 @@
 // Worlds that are not written out in a scene: made-up stores and tag files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "boards/sim_air.hpp"
 #include "boards/world_builder.hpp"
 #include "tests/boards/flown_mission.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
 namespace {
@@ -24,23 +22,12 @@ mission = { policy = "static", time_limit_s = 5 }
 
 class SceneStoreTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = std::filesystem::temp_directory_path() / "forager-XXXXXX";
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  void put(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ + "/" + name) << text;
-  }
+  void put(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   [[nodiscard]] hal::Result<Scene> scene(const std::string& world) const {
     put("x.toml", kBare + world);
-    return load_scene(folder_ + "/x.toml");
+    return load_scene(folder_.file("x.toml"));
   }
-  std::string folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(SceneStoreTest, AStoreIsTheSameForTheSameSeed) {

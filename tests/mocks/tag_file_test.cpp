@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "hal/random.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::mocks {
 namespace {
@@ -82,16 +82,7 @@ TEST(TagFile, SaysWhereTheMistakeIs) {
 
 class TagFileOnDisk : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = std::filesystem::temp_directory_path() / "forager-XXXXXX";
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  std::string folder_;
+  test::ScratchFolder folder_;
 };
 
 // More than the pieces it is read in, so that lines are cut in two.
@@ -103,7 +94,7 @@ TEST_F(TagFileOnDisk, WhatIsWrittenIsReadBackToTheBit) {
     tags.push_back({fmt::format("3034257bf7194e40{:08x}", i), {x, random.uniform(), 0.1 * i}, i % 3 != 0});
   }
   tags.push_back({"30342222", {}, true});
-  const std::string path = folder_ + "/tags.csv";
+  const std::string path = folder_.file("tags.csv");
   ASSERT_TRUE(write_tag_file(path, tags));
   ASSERT_GT(std::filesystem::file_size(path), 2'000'000U);
   TagList read;
@@ -118,7 +109,7 @@ TEST_F(TagFileOnDisk, WhatIsWrittenIsReadBackToTheBit) {
 }
 
 TEST_F(TagFileOnDisk, ALineWithoutEndIsRefusedNotSwallowed) {
-  const std::string path = folder_ + "/long.csv";
+  const std::string path = folder_.file("long.csv");
   std::ofstream(path) << "epc,x,y,z\n" << std::string(3'000'000, 'a');
   TagList tags;
   const auto read = read_tag_file(path, tags);
@@ -128,12 +119,12 @@ TEST_F(TagFileOnDisk, ALineWithoutEndIsRefusedNotSwallowed) {
 
 TEST_F(TagFileOnDisk, FilesThatAreNotThere) {
   TagList tags;
-  const auto missing = read_tag_file(folder_ + "/none.csv", tags);
+  const auto missing = read_tag_file(folder_.file("none.csv"), tags);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, hal::ErrorCode::not_present);
-  const auto folder = read_tag_file(folder_, tags);
+  const auto folder = read_tag_file(folder_.path(), tags);
   ASSERT_FALSE(folder);
-  EXPECT_FALSE(write_tag_file(folder_ + "/no/such/folder.csv", tags));
+  EXPECT_FALSE(write_tag_file(folder_.file("no/such/folder.csv"), tags));
 }
 
 }  // namespace

@@ -56,17 +56,4 @@ inline void expect_same_items(const std::vector<reader::InventoryItem>& a,
   }
 }
 
-// A folder of its own, gone with its contents at the end of the scope.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
-
 }  // namespace forager::test

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tests/reader/inventory_samples.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::reader {
 namespace {
@@ -37,7 +38,7 @@ class InventoryContract : public testing::TestWithParam<const char*> {
     return located;
   }
 
-  test::TemporaryFolder folder_;
+  test::ScratchFolder folder_;
   std::unique_ptr<InventoryStore> store_;
 };
 

@@ -14,6 +14,7 @@
 
 #include "reader/inventory_store.hpp"
 #include "tests/reader/inventory_samples.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::reader {
 namespace {
@@ -43,7 +44,7 @@ class SqliteInventory : public testing::Test {
 
   void write_file(const std::string& bytes) { std::ofstream(path_, std::ios::binary) << bytes; }
 
-  test::TemporaryFolder folder_;
+  test::ScratchFolder folder_;
   std::string path_ = folder_.file("run.db");
 };
 

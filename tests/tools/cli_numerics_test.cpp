@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 
 namespace forager::tools {
 namespace {
@@ -51,7 +51,7 @@ class AccuracyCommandLine : public testing::Test {
     arguments.insert(arguments.begin(), {"bench", "accuracy", "--effort", "0.02", "--repeat", "1"});
     return run_program(arguments, std::move(options));
   }
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(AccuracyCommandLine, RowsCompareEveryWayWithTheTruth) {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "reader/inventory_store.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 
 namespace forager::tools {
 namespace {
@@ -48,7 +48,7 @@ class RunCommandLine : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(RunCommandLine, JsonIsLinesAndTheLastIsTheSummary) {

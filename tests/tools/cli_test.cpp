@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "reader/inventory_store.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 
 namespace forager::tools {
 namespace {
@@ -51,7 +51,7 @@ class CommandLine : public testing::Test {
   }
   std::string scene(const std::string& text) { return folder_.write("scene.toml", text); }
 
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(CommandLine, SaysWhichCommandsThereAre) {

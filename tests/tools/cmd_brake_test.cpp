@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 
 namespace forager::tools {
 namespace {
@@ -126,7 +126,7 @@ class CmdBrakeOnABoard : public testing::Test {
   std::string board(const std::string& brakes) {
     return folder_.write("robot.toml", "[board]\nname = \"robot\"\n" + brakes);
   }
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(CmdBrakeOnABoard, ListReadsTheFileAndOpensNothing) {

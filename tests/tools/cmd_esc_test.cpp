@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 
 namespace forager::tools {
 namespace {
@@ -133,7 +133,7 @@ TEST(CmdEsc, SaysWhatIsWrongWithTheRequest) {
 }
 
 TEST(CmdEsc, ABoardFileNamesItsLines) {
-  ScratchFolder folder;
+  test::ScratchFolder folder;
   const auto board = [&](const std::string& esc) {
     return folder.write("board.toml", "[board]\nname = \"bench\"\n" + esc);
   };
@@ -163,7 +163,7 @@ most_throttle = 0.3
 }
 
 TEST(CmdEsc, ARealBoardThatIsNotThereSaysSo) {
-  ScratchFolder folder;
+  test::ScratchFolder folder;
   const std::string board = folder.write("board.toml", R"([board]
 name = "bench"
 [esc]

@@ -4,7 +4,7 @@
 
 #include "boards/scene.hpp"
 #include "boards/world_builder.hpp"
-#include "tests/tools/scratch_folder.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tools/cli_style.hpp"
 
 namespace forager::tools {
@@ -25,7 +25,7 @@ struct GenerateCommandTest : testing::Test {
     err = testing::internal::GetCapturedStderr();
     return code;
   }
-  ScratchFolder folder;
+  test::ScratchFolder folder;
   std::string store = folder.write(
       "store.toml", std::string(kBare) + "world.generate = { kind = \"square\", tags = 1500 }\n");
   std::string out;

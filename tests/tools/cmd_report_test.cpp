@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "reader/inventory_store.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tools/cli_style.hpp"
 
 namespace forager::tools {
@@ -21,9 +22,6 @@ using namespace std::chrono_literals;
 class ReportCommand : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = std::filesystem::temp_directory_path() / "forager-XXXXXX";
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
     auto store = reader::open_sqlite_inventory(file("run.db"), reader::StoreMode::create);
     if (!store && store.error().code == hal::ErrorCode::unsupported) GTEST_SKIP() << "built without SQLite";
     std::vector<reader::LocatedRead> reads(3);
@@ -36,12 +34,7 @@ class ReportCommand : public testing::Test {
     ASSERT_TRUE((*store)->commit(1, reads));
     ASSERT_TRUE((*store)->set_fact("scene", "4A \"T\"\x1b[2J"));
   }
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  std::string file(const std::string& name) const { return folder_ + "/" + name; }
+  std::string file(const std::string& name) const { return folder_.file(name); }
 
   // Through the command line, as a person would.
   int run(std::vector<std::string> arguments) {
@@ -58,7 +51,7 @@ class ReportCommand : public testing::Test {
     return exit_code;
   }
 
-  std::string folder_;
+  test::ScratchFolder folder_;
   std::string out_;
   std::string err_;
 };

@@ -7,8 +7,8 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 #include "tools/cli_style.hpp"
 
 namespace forager::tools {
@@ -67,7 +67,7 @@ TEST(ReproduceCommand, JsonRowsEndInTheRootMeanSquare) {
 }
 
 TEST(ReproduceCommand, WritesATableAndAPage) {
-  const ScratchFolder folder;
+  const test::ScratchFolder folder;
   const auto result = forager({"reproduce", "--scenes", kScenes, "--seeds", "1", "--runs", "1B,ch4-2",
                                "--html", folder.file("page.html")});
   ASSERT_EQ(result.exit_code, kExitDone) << result.err;
@@ -107,7 +107,7 @@ class CalibrateCommandLine : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return forager(arguments);
   }
-  ScratchFolder folder_;
+  test::ScratchFolder folder_;
 };
 
 TEST_F(CalibrateCommandLine, FitsARecordingAndShowsResiduals) {

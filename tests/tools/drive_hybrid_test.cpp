@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
-#include "tests/tools/scratch_folder.hpp"
 
 namespace forager::tools {
 namespace {
@@ -37,7 +37,7 @@ TEST(DriveHybrid, JsonIsOneLine) {
 }
 
 TEST(DriveHybrid, WritesAJournalOfTheFirstRun) {
-  ScratchFolder folder;
+  test::ScratchFolder folder;
   const std::string path = folder.file("journal.txt");
   ASSERT_EQ(run_program({"drive", kHop, "--journal", path}).exit_code, 0);
   std::ifstream file(path);
@@ -55,7 +55,7 @@ TEST(DriveHybrid, RefusesWhatOnlyRollingScenesHave) {
 }
 
 TEST(DriveHybrid, SaysWhyThereIsNoRoute) {
-  ScratchFolder folder;
+  test::ScratchFolder folder;
   const std::string scene = folder.write("wall.toml", "base = \"" + kHop + R"("
 [[obstacles]]
 min = [3.0, -2.5]

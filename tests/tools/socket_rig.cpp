@@ -44,12 +44,6 @@ std::string own_address() {
   return fmt::format("127.{}.{}.{}", 64 + ((pid >> 16) & 63), (pid >> 8) & 255, pid & 255);
 }
 
-std::filesystem::path make_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "forager-socket-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  return name;
-}
-
 }  // namespace
 
 std::vector<Json> lines_of(const std::string& out) {
@@ -84,8 +78,7 @@ SocketRig::SocketRig(const Options& options)
       mavlink_port(free_port(host)),
       pose_port(free_port(host)),
       air_port(free_port(host)),
-      rogue_port(free_port(host)),
-      folder_(make_folder()) {
+      rogue_port(free_port(host)) {
   write_scene(options);
   write_board(options);
 }
@@ -99,8 +92,6 @@ SocketRig::~SocketRig() {
     if (autopilot_)
       fmt::print(stderr, "-- autopilot:\n{}{}", autopilot_->so_far().out, autopilot_->so_far().err);
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 // Links are given ten times as long as they have on a vehicle, because a busy machine may keep these programs

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "reader/inventory_store.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
 namespace forager::tools {
@@ -58,7 +58,7 @@ class SocketRig {
   // What the autopilot has printed so far speaks of motors.
   bool autopilot_armed();
 
-  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
   // EPCs in the inventory as it is now, mission under way or not.
   [[nodiscard]] std::set<std::string> inventory() const;
   // Sum of the reads of all items.
@@ -76,7 +76,7 @@ class SocketRig {
   std::vector<std::string> with_shared(std::vector<std::string> arguments,
                                        const std::vector<std::string>& more) const;
 
-  std::filesystem::path folder_;
+  test::ScratchFolder folder_;
   std::optional<Program> reader_;
   std::optional<Program> autopilot_;
   std::optional<Program> mission_;

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace forager::tools {
+namespace forager::test {
 
 // A folder of its own for one test, gone with it.
 class ScratchFolder {
@@ -42,4 +42,4 @@ class ScratchFolder {
   std::string path_;
 };
 
-}  // namespace forager::tools
+}  // namespace forager::test
