@@ -1,9 +1,7 @@
-#include <fmt/format.h>
-
-#include <cstdlib>
 #include <utility>
 
 #include "boards/device_set.hpp"
+#include "boards/reader_bench.hpp"
 #include "boards/world_builder.hpp"
 #include "hal/linux/curl_http_client.hpp"
 #include "hal/linux/tcp_stream.hpp"
@@ -40,8 +38,7 @@ class SocketDevices final : public DeviceSet {
                 const DeviceOptions& options)
       : world_(build_world(scene, options.seed)),
         facts_(facts_of(world_)),
-        rest_(hal::make_curl_http_client(
-            fmt::format("http://{}:{}", board.reader_host, board.reader_rest_port), std::move(credentials))),
+        rest_(hal::make_curl_http_client(reader_url(board), std::move(credentials))),
         events_(hal::open_tcp_stream(board.reader_host, board.reader_stream_port)),
         autopilot_(hal::open_udp_peer(board.autopilot.host, board.autopilot.port)),
         truth_(hal::open_udp_listener(board.truth.host, board.truth.port)),
@@ -79,15 +76,10 @@ class SocketDevices final : public DeviceSet {
 
 hal::Result<std::unique_ptr<DeviceSet>> make_socket_devices(const Scene& scene, const Board& board,
                                                             const DeviceOptions& options) {
+  auto login = reader_login(board);
+  if (!login) return hal::fail(std::move(login).error());
   std::optional<hal::HttpCredentials> credentials;
-  if (!board.reader_user.empty()) {
-    const char* password = std::getenv(board.reader_password_env.c_str());
-    if (password == nullptr)
-      return hal::fail(hal::ErrorCode::not_present, "board " + board.name, "reader.password_env",
-                       fmt::format("the environment variable {} is not set", board.reader_password_env),
-                       fmt::format("Set it: export {}=...", board.reader_password_env));
-    credentials = hal::HttpCredentials{board.reader_user, password};
-  }
+  if (*login) credentials = hal::HttpCredentials{(*login)->user, (*login)->password};
   return std::make_unique<SocketDevices>(scene, board, std::move(credentials), options);
 }
 

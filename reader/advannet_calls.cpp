@@ -28,6 +28,13 @@ std::string AdvanNetReader::blame(std::string detail, std::string mend) const {
                         advannet::describe_request(request_), std::move(detail), std::move(mend)});
 }
 
+hal::DigitalOut& AdvanNetReader::gpo(std::uint8_t line) {
+  const auto known = std::ranges::find_if(gpos_, [line](const auto& gpo) { return gpo->line() == line; });
+  if (known != gpos_.end()) return **known;
+  gpos_.push_back(std::make_unique<AdvanNetGpo>(line));
+  return *gpos_.back();
+}
+
 AdvanNetGpo* AdvanNetReader::unsettled_gpo() {
   const auto found = std::ranges::find_if(gpos_, [](const auto& gpo) { return !gpo->settled(); });
   return found == gpos_.end() ? nullptr : found->get();

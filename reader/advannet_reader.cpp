@@ -96,13 +96,6 @@ void AdvanNetReader::halt() noexcept {
   }
 }
 
-hal::DigitalOut& AdvanNetReader::gpo(std::uint8_t line) {
-  const auto known = std::ranges::find_if(gpos_, [line](const auto& gpo) { return gpo->line() == line; });
-  if (known != gpos_.end()) return **known;
-  gpos_.push_back(std::make_unique<AdvanNetGpo>(line));
-  return *gpos_.back();
-}
-
 void AdvanNetReader::set_phase(LinkPhase phase, std::string reason) {
   if (phase == link_.phase && reason == link_.reason) return;
   if (phase != link_.phase) link_.since = now_;
@@ -258,6 +251,7 @@ void AdvanNetReader::take_message() {
   for (TagRead& read : message_.reads)
     if (accept(read)) reads_.push_back(read);
   inputs_.insert(inputs_.end(), message_.inputs.begin(), message_.inputs.end());
+  if (message_.kind == AdvanNetMessage::Kind::inventory) ++counters_.inventories;
   if (message_.kind == AdvanNetMessage::Kind::unknown) ++counters_.unknown;
   if (message_.type.empty() || message_.type == "GPI") return;
   journal_.note(now_, kSource, fmt::format("event {}: {}", message_.type, message_.text));

@@ -36,6 +36,7 @@ struct AdvanNetConfig {
 [[nodiscard]] hal::Result<> validate(const AdvanNetConfig& config);
 
 struct AdvanNetCounters {
+  std::uint64_t inventories = 0;   // messages of reads; each gathers one or several rounds on the air
   std::uint64_t reads = 0;         // handed out
   std::uint64_t stale = 0;         // older than the start, dropped
   std::uint64_t out_of_order = 0;  // older than a read before them (handed out)

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <charconv>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/cli_style.hpp"
@@ -64,6 +66,27 @@ NumberBetween::NumberBetween(double low, double high) {
     return parse_all(text, value) && value >= low && value <= high
                ? std::string{}
                : fmt::format("'{}' is not a number from {} to {}", text, low, high);
+  };
+}
+
+TimeSpan::TimeSpan(double low_s, double high_s) {
+  func_ = [low_s, high_s](std::string& text) {
+    constexpr std::array<std::pair<std::string_view, double>, 4> kUnits{
+        {{"ms", 1e-3}, {"min", 60.0}, {"s", 1.0}, {"h", 3600.0}}};
+    std::string number = text;
+    double factor = 1.0;
+    for (const auto& [unit, seconds] : kUnits) {
+      if (!text.ends_with(unit)) continue;
+      number.resize(text.size() - unit.size());
+      factor = seconds;
+      break;
+    }
+    double value = 0.0;
+    if (!parse_all(number, value) || !(value * factor >= low_s && value * factor <= high_s))
+      return fmt::format("'{}' is not a time from {} s to {} s, such as 10s, 250ms or 2min", text, low_s,
+                         high_s);
+    text = fmt::format("{}", value * factor);
+    return std::string{};
   };
 }
 

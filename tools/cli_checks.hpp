@@ -17,6 +17,12 @@ struct NumberBetween : CLI::Validator {
   NumberBetween(double low, double high);
 };
 
+// A length of time: seconds ("10", "0.5"), or with a unit, "10s", "250ms", "2min", "1h". The variable gets
+// seconds.
+struct TimeSpan : CLI::Validator {
+  TimeSpan(double low_s, double high_s);
+};
+
 // What is wrong with a command line, where, and where help is to be had, on stderr as one line. Gives
 // kExitUsage.
 int complain_about_arguments(const CLI::App& app, const CLI::ParseError& error, int argc,
