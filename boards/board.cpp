@@ -64,6 +64,7 @@ hal::Result<Board> load_board(const std::string& name_or_path) {
   board.name = about.text("name", "");
   board.kind =
       about.choice("kind", "socket", {"sim", "socket"}) == "sim" ? BoardKind::sim : BoardKind::socket;
+  board.guard_timeout = about.duration("guard_timeout_ms", board.guard_timeout, {20, 10000});
   read_reader(top.table("reader"), board);
   ConfigReader autopilot = top.table("autopilot");
   board.autopilot = read_endpoint(autopilot, "address", board.autopilot);
@@ -71,6 +72,8 @@ hal::Result<Board> load_board(const std::string& name_or_path) {
   board.truth = read_endpoint(world, "truth", board.truth);
   board.brakes = read_brake_board(top.table("brakes"));
   board.esc = read_esc_board(top.table("esc"));
+  board.bench = read_bench_board(top);
+  add_brake_servos(board.bench, board.brakes);
   check_unused(*root, issue);
   if (issue) return hal::fail(std::move(*issue));
   return board;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "boards/bench_board.hpp"
 #include "boards/brake_board.hpp"
 #include "boards/config_node.hpp"
 #include "boards/esc_board.hpp"
@@ -43,8 +44,12 @@ struct Board {
   Endpoint autopilot{"127.0.0.1", 14550};
   Endpoint truth{"127.0.0.1", 14571};  // where the emulated autopilot's truth feed is received
 
+  // A program that moves outputs and is silent for longer than this is taken for hung (boards/output_guard).
+  hal::Duration guard_timeout = std::chrono::milliseconds(60);
+
   BrakeBoard brakes;
-  EscBoard esc;  // lines of the bench; a mission never uses them
+  EscBoard esc;      // lines of the bench; a mission never uses them
+  BenchBoard bench;  // single devices by name; a mission never uses them either
 };
 
 // The board with everything in process.

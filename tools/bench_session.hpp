@@ -5,17 +5,13 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "hal/time.hpp"
+#include "tools/live_view.hpp"
 #include "tools/stop_signal.hpp"
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
-
-// What the bench commands of single devices share: the loop, the output, the options.
+// What the bench commands of single devices share: the loop and the output.
 namespace forager::tools {
 
 enum class BenchEnd : std::uint8_t {
@@ -48,36 +44,25 @@ class BenchLoop {
 // call returns, so that whoever pipes it can read along.
 class BenchOutput {
  public:
-  explicit BenchOutput(bool json);
-  ~BenchOutput();
-  BenchOutput(const BenchOutput&) = delete;
-  BenchOutput& operator=(const BenchOutput&) = delete;
+  explicit BenchOutput(bool json) : json_(json), view_(!json && LiveView::possible()) {}
 
   [[nodiscard]] bool json() const { return json_; }
-  // Control characters from devices become blanks. With --json nothing.
-  void line(std::string_view text);
+  // With --json nothing.
+  void line(const std::string& text);
   // Without --json nothing.
   void record(const nlohmann::ordered_json& object);
-  // How things stand right now: repaints one line on a terminal. Elsewhere, and with --json, nothing: there
+  // How things stand right now, written over itself on a terminal. Elsewhere, and with --json, nothing: there
   // what counts is printed as it changes.
-  void live(std::string_view text);
-  [[nodiscard]] bool is_live() const { return terminal_ && !json_; }
+  void live(const std::vector<std::string>& block);
 
  private:
-  void clear_live();
   bool json_;
-  bool terminal_;
-  bool live_open_ = false;
+  LiveView view_;
 };
 
-// "2", "2s", "1.5s", "500ms"; nothing if it is no such time, or not from least to most.
-[[nodiscard]] std::optional<hal::Duration> parse_time(std::string_view text, hal::Duration least,
-                                                      hal::Duration most);
 // "2 s", "500 ms".
 [[nodiscard]] std::string time_text(hal::Duration time);
-
-// An option that takes such a time. `into` must live until the command line is parsed.
-CLI::Option* add_time_option(CLI::App* app, const std::string& name, std::optional<hal::Duration>& into,
-                             const std::string& help, hal::Duration least, hal::Duration most);
+// "nothing is driven without --arm: <what>", on stderr; gives kExitUsage.
+int complain_not_armed(const std::string& what);
 
 }  // namespace forager::tools
