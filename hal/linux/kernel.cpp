@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -31,6 +32,7 @@ class RealKernel final : public Kernel {
     const int answer = ::ioctl(fd, request, argument);
     return answer < 0 ? -errno : answer;
   }
+  int lock(int fd) override { return ::flock(fd, LOCK_EX | LOCK_NB) < 0 ? -errno : 0; }
   std::vector<std::string> list(const std::string& folder) override {
     std::vector<std::string> names;
     DIR* directory = ::opendir(folder.c_str());

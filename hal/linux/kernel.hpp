@@ -20,6 +20,8 @@ class Kernel {
   virtual long read(int fd, std::span<char> into) = 0;
   virtual long write(int fd, std::string_view text) = 0;
   virtual int ioctl(int fd, unsigned long request, void* argument) = 0;
+  // flock(LOCK_EX | LOCK_NB): -EAGAIN when somebody else has it. Lasts until the close.
+  virtual int lock(int fd) = 0;
   // Names in a folder, sorted, without . and ..; empty if there is no such folder.
   virtual std::vector<std::string> list(const std::string& folder) = 0;
   // Where a symbolic link leads; empty if it is none.

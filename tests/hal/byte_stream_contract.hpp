@@ -78,7 +78,10 @@ class ByteStreamContract : public testing::TestWithParam<RigMaker> {
   std::unique_ptr<StreamRig> rig_ = GetParam().make();
 };
 
-// For streams that connect, keep the order of bytes and notice when the peer goes.
+// For streams that keep the order of bytes and notice when the peer goes.
+class OrderedContract : public ByteStreamContract {};
+
+// For those of them that connect, and deliver what came before the peer hung up.
 class ConnectionContract : public ByteStreamContract {};
 
 // For streams of messages, whose peers do not see each other's state.
@@ -118,7 +121,7 @@ TEST_P(ByteStreamContract, AnswersAtOnceWhenNothingIsThere) {
   EXPECT_EQ(StreamState::open, stream().poll().value());
 }
 
-TEST_P(ConnectionContract, NothingIsLostOrTurnedRoundUnderBackPressure) {
+TEST_P(OrderedContract, NothingIsLostOrTurnedRoundUnderBackPressure) {
   connect();
   constexpr std::size_t kTooMuch = std::size_t{256} << 20;
   const auto pattern = [](std::size_t i) { return static_cast<std::byte>((i * 2654435761U) >> 13); };
@@ -168,7 +171,7 @@ TEST_P(ByteStreamContract, CloseIsFinalUntilTheNextOpen) {
   EXPECT_EQ("again", read_text(peer(), 5));
 }
 
-TEST_P(ConnectionContract, PeerSeesTheClose) {
+TEST_P(OrderedContract, PeerSeesTheClose) {
   connect();
   ByteStream& other = peer();
   ASSERT_EQ(3U, stream().write(bytes_of("bye")).value());
@@ -200,7 +203,7 @@ TEST_P(ConnectionContract, WritingToALostPeerDoesNotSwallowItsLastWords) {
   EXPECT_EQ(ErrorCode::disconnected, code_of_read(stream()));
 }
 
-TEST_P(ConnectionContract, WriteReportsTheLossWhenNothingIsLeftToRead) {
+TEST_P(OrderedContract, WriteReportsTheLossWhenNothingIsLeftToRead) {
   connect();
   rig_->close_peer();
   Result<std::size_t> written = std::size_t{0};

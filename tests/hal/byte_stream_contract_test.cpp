@@ -38,6 +38,7 @@ const RigMaker kFaultless{"FaultyStreamWithoutFaults", [] { return std::make_uni
 
 INSTANTIATE_TEST_SUITE_P(Doubles, ByteStreamContract,
                          testing::Values(kMemoryBytes, kMemoryDatagrams, kFaultless), rig_name);
+INSTANTIATE_TEST_SUITE_P(Doubles, OrderedContract, testing::Values(kMemoryBytes, kFaultless), rig_name);
 INSTANTIATE_TEST_SUITE_P(Doubles, ConnectionContract, testing::Values(kMemoryBytes, kFaultless), rig_name);
 INSTANTIATE_TEST_SUITE_P(Doubles, DatagramContract, testing::Values(kMemoryDatagrams), rig_name);
 

@@ -2,9 +2,13 @@
 
 #include <optional>
 
+#include "hal/linux/pseudo_terminal.hpp"
+#include "hal/linux/serial_port.hpp"
 #include "hal/linux/tcp_listener.hpp"
 #include "hal/linux/tcp_stream.hpp"
 #include "hal/linux/udp_peer.hpp"
+#include "mocks/virtual_clock.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace forager::hal::contract {
 namespace {
@@ -63,12 +67,54 @@ class UdpRig final : public StreamRig {
   std::uint16_t known_port_ = 0;
 };
 
+// The adapter's name stays when it is unplugged and plugged in again.
+class SerialRig final : public StreamRig {
+ public:
+  SerialRig() { serve(); }
+  ByteStream& stream() override { return *stream_; }
+  ByteStream& peer() override { return *far_; }
+  void serve() override {
+    if (!far_) far_ = open_pseudo_terminal(folder_.file("ttyUSB0")).value();
+    if (far_->poll().value() == StreamState::closed) (void)far_->open();
+  }
+  void close_peer() override { far_.reset(); }
+  void refuse_connects(bool) override {}
+
+ private:
+  test::ScratchFolder folder_;
+  mocks::VirtualClock clock_;
+  std::unique_ptr<PseudoTerminal> far_;
+  std::unique_ptr<ByteStream> stream_ = open_serial_port({.device = folder_.file("ttyUSB0")}, clock_);
+};
+
+// The other way round: the emulated device's end of the line.
+class TerminalRig final : public StreamRig {
+ public:
+  ByteStream& stream() override { return *far_; }
+  ByteStream& peer() override { return *port_; }
+  void serve() override {
+    if (port_->poll().value() == StreamState::closed) (void)port_->open();
+  }
+  void close_peer() override { port_->close(); }
+  void refuse_connects(bool) override {}
+
+ private:
+  mocks::VirtualClock clock_;
+  std::unique_ptr<PseudoTerminal> far_ = open_pseudo_terminal().value();
+  std::unique_ptr<ByteStream> port_ = open_serial_port({.device = far_->port()}, clock_);
+};
+
+const RigMaker kSerial{"Serial", [] { return std::make_unique<SerialRig>(); }};
+const RigMaker kTerminal{"Terminal", [] { return std::make_unique<TerminalRig>(); }};
 const RigMaker kTcp{"Tcp", [] { return std::make_unique<TcpRig>(); }};
 const RigMaker kUdp{"Udp", [] { return std::make_unique<UdpRig>(); }};
 
 INSTANTIATE_TEST_SUITE_P(Sockets, ByteStreamContract, testing::Values(kTcp, kUdp), rig_name);
+INSTANTIATE_TEST_SUITE_P(Sockets, OrderedContract, testing::Values(kTcp), rig_name);
 INSTANTIATE_TEST_SUITE_P(Sockets, ConnectionContract, testing::Values(kTcp), rig_name);
 INSTANTIATE_TEST_SUITE_P(Sockets, DatagramContract, testing::Values(kUdp), rig_name);
+INSTANTIATE_TEST_SUITE_P(Lines, ByteStreamContract, testing::Values(kSerial, kTerminal), rig_name);
+INSTANTIATE_TEST_SUITE_P(Lines, OrderedContract, testing::Values(kSerial), rig_name);
 
 }  // namespace
 }  // namespace forager::hal::contract

@@ -33,6 +33,8 @@ class Node {
   virtual long read(std::string&) { return -EINVAL; }
   virtual long write(std::string_view) { return -EINVAL; }
   virtual int ioctl(unsigned long, void*) { return -ENOTTY; }
+  virtual int lock() { return 0; }
+  virtual void close() {}
 };
 
 class FakeKernel final : public Kernel {
@@ -49,7 +51,14 @@ class FakeKernel final : public Kernel {
     open_[++last_fd_] = {path, found->second};
     return last_fd_;
   }
-  int close(int fd) override { return open_.erase(fd) == 1 ? 0 : -EBADF; }
+  int close(int fd) override {
+    const auto found = open_.find(fd);
+    if (found == open_.end()) return -EBADF;
+    found->second.second->close();
+    open_.erase(found);
+    return 0;
+  }
+  int lock(int fd) override { return open_.at(fd).second->lock(); }
   long read(int fd, std::span<char> into) override {
     if (fail_next) return -*std::exchange(fail_next, std::nullopt);
     std::string text;
