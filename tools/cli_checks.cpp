@@ -52,11 +52,14 @@ std::string unknown_command(const CLI::App& app, int argc, const char* const* ar
 
 }  // namespace
 
-WholeNumber::WholeNumber(std::uint64_t most) {
-  func_ = [most](const std::string& text) {
+WholeNumber::WholeNumber(std::uint64_t most) : WholeNumber(0, most) {}
+
+WholeNumber::WholeNumber(std::uint64_t least, std::uint64_t most) {
+  func_ = [least, most](const std::string& text) {
     std::uint64_t value = 0;
-    return parse_all(text, value) ? std::string{}
-                                  : fmt::format("'{}' is not a whole number from 0 to {}", text, most);
+    return parse_all(text, value) && value >= least && value <= most
+               ? std::string{}
+               : fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
   };
 }
 

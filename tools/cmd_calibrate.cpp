@@ -111,12 +111,11 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
   calibrate->add_option("--scenes", command->folder, "Folder of the published scenes")->capture_default_str();
   calibrate->add_option("--seeds", command->seeds, "With --published: missions of each experiment")
       ->capture_default_str()
-      ->check(WholeNumber(1000))
-      ->check(CLI::Range(1, 1000));
+      ->check(WholeNumber(1, 1000));
   calibrate
       ->add_option("--evaluations", command->evaluations, "With --published: parameter sets to try at most")
       ->capture_default_str()
-      ->check(WholeNumber(100000));
+      ->check(WholeNumber(1, 100000));
   calibrate->add_option("--simulate", command->simulate,
                         "Write a simulated recording of the scene to this folder");
   calibrate->add_option("--seconds", command->seconds, "With --simulate: its length")

@@ -84,9 +84,14 @@ int break_many(const DriveCommand& command, const boards::DriveScene& scene) {
       command.json ? fault_json(scene, *faults, since(start)) : fault_table(scene, *faults, since(start));
   if (const auto written = write_output("-", text); !written) return complain(written.error());
   if (StopSignal::raised()) return kExitFailure;
-  for (const boards::DriveFaultSummary& fault : *faults)
-    if (fault.unsafe > 0) return kExitCheckFailed;
-  return kExitDone;
+  bool passed = true;
+  for (const boards::DriveFaultSummary& fault : *faults) {
+    if (fault.struck == 0)
+      fmt::print(stderr, "forager: no run was struck by '{}', which shows nothing: take more runs\n",
+                 boards::to_string(fault.fault));
+    passed = passed && fault.unsafe == 0 && fault.struck > 0;
+  }
+  return passed ? kExitDone : kExitCheckFailed;
 }
 
 // Scenes with a table [hybrid] have a runner of their own.
@@ -121,7 +126,7 @@ void add_drive_command(CLI::App& app, int& exit_code) {
       ->check(WholeNumber())
       ->capture_default_str();
   drive->add_option("--runs", command->runs, "How many runs; with --faults of each kind")
-      ->check(WholeNumber(10'000'000))
+      ->check(WholeNumber(1, 10'000'000))
       ->capture_default_str();
   drive->add_flag("--faults", command->faults, "Break something in every run, one kind after the other");
   drive->add_flag("--wire", command->wire, "Through MAVLink bytes and servo pulses instead of calls");

@@ -52,8 +52,7 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
       "reproduce", "Fly the published experiments and compare: published, simulated, difference");
   reproduce->add_option("--seeds", command->seeds, "Missions of each experiment, seeds 1 to this")
       ->capture_default_str()
-      ->check(WholeNumber(10000))
-      ->check(CLI::Range(1, 10000));
+      ->check(WholeNumber(1, 10000));
   reproduce->add_option("--runs", command->runs, "Only these experiments, such as 1A,2B,4.8,ch4-1")
       ->delimiter(',');
   reproduce->add_option("--scenes", command->folder, "Folder of the scene files")->capture_default_str();

@@ -128,6 +128,9 @@ TEST_F(CommandLine, TakesNumbersStrictly) {
   for (const char* seed : {"abc", "5x", "-1", "+1", "1.5", "0x10", "", " 1", "99999999999999999999999"})
     expect_refusal({"run", kScene, "--seed", seed}, kUsage,
                    AllOf(HasSubstr("--seed"), HasSubstr("whole number")));
+  for (const char* evaluations : {"0", "100001", "4294967297"})
+    expect_refusal({"calibrate", "--published", "--evaluations", evaluations}, kUsage,
+                   AllOf(HasSubstr("--evaluations"), HasSubstr("from 1 to 100000")));
   for (const char* port : {"-1", "0x50", "65536", ""})
     expect_refusal({"emulate", "reader", kScene, "--for", "0.01", "--rest-port", port}, kUsage,
                    HasSubstr("--rest-port"));
