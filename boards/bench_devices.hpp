@@ -15,6 +15,10 @@
 #include "hal/pwm.hpp"
 #include "hal/time.hpp"
 
+namespace forager::hal {
+class Kernel;
+}
+
 namespace forager::boards {
 
 struct LineFacts {
@@ -74,8 +78,9 @@ class BenchMachine {
                                                                         hal::Duration timeout) = 0;
 };
 
-// This machine, by the backends that were built. The journal must outlive it.
-[[nodiscard]] std::unique_ptr<BenchMachine> make_real_machine(hal::Journal& journal);
+// This machine, by the backends that were built. The journal must outlive it. kernel null: Linux.
+[[nodiscard]] std::unique_ptr<BenchMachine> make_real_machine(hal::Journal& journal,
+                                                              hal::Kernel* kernel = nullptr);
 
 // One that exists in this process only, chip "sim": eight GPIO lines OUT0..OUT3 and IN0..IN3, each output
 // wired to the input of its number; two PWM channels; an I2C bus "sim" with a PCA9685 at 0x40. Time jumps
