@@ -1,19 +1,11 @@
 #include "mocks/sim_modbus_slave.hpp"
 
+#include "mocks/modbus_crc.hpp"
+
 namespace forager::mocks {
 namespace {
 
 constexpr std::size_t kTcpHeader = 6;  // transaction, protocol, length
-
-std::uint16_t crc_of(std::span<const std::uint8_t> bytes) {
-  std::uint16_t crc = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc = static_cast<std::uint16_t>(crc ^ byte);
-    for (int bit = 0; bit < 8; ++bit)
-      crc = static_cast<std::uint16_t>((crc & 1U) != 0 ? (crc >> 1) ^ 0xA001U : crc >> 1);
-  }
-  return crc;
-}
 
 std::uint16_t word(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
@@ -53,7 +45,7 @@ std::vector<std::uint8_t> SimModbusSlave::answer(std::span<const std::uint8_t> f
   const bool rtu = framing_ == Framing::rtu;
   const std::size_t head = rtu ? 0 : kTcpHeader;
   if (frame.size() < head + 2) return {};
-  if (rtu && crc_of(frame) != 0) return {};  // over data and CRC together it is zero
+  if (rtu && modbus_crc(frame) != 0) return {};  // over data and CRC together it is zero
   if (frame[head] != unit_) return {};
   ++requests;
   if (fault == Fault::silent) return {};
@@ -66,9 +58,8 @@ std::vector<std::uint8_t> SimModbusSlave::answer(std::span<const std::uint8_t> f
   out.push_back(fault == Fault::wrong_unit ? static_cast<std::uint8_t>(unit_ + 1) : unit_);
   out.insert(out.end(), pdu.begin(), pdu.end());
   if (rtu) {
-    const auto crc = static_cast<std::uint16_t>(crc_of(out) ^ (fault == Fault::wrong_crc ? 0x0100 : 0));
-    out.push_back(static_cast<std::uint8_t>(crc & 0xFF));
-    out.push_back(static_cast<std::uint8_t>(crc >> 8));
+    append_modbus_crc(out);
+    if (fault == Fault::wrong_crc) out.back() ^= 1U;
   }
   if (fault == Fault::truncated) out.resize(out.size() / 2);
   return out;

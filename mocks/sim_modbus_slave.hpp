@@ -30,6 +30,11 @@ class SimModbusSlave {
 
   // Bytes as they arrive, in any pieces; the answers they complete.
   [[nodiscard]] std::vector<std::uint8_t> feed(std::span<const std::uint8_t> bytes);
+  // The line was quiet for three and a half characters: whatever came before is no beginning of a frame any
+  // more. Without it noise would put every later frame out of step (RTU; a connection keeps its order).
+  void silence() {
+    if (framing_ == Framing::rtu) pending_.clear();
+  }
 
  private:
   [[nodiscard]] std::size_t frame_size() const;
