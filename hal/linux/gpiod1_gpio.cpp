@@ -12,62 +12,46 @@
 
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/gpio_error.hpp"
+#include "hal/linux/gpio_request.hpp"
 
 namespace forager::hal {
 namespace {
-
-constexpr int kMostChips = 64;
 
 struct CloseChip {
   void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }  // gives its lines back, too
 };
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
 
-std::string chip_path(int number) { return fmt::format("/dev/gpiochip{}", number); }
-
 // By path, by name, or by label.
 Result<Chip> open_chip(const std::string& wanted, const std::string& device) {
-  if (wanted.rfind("/dev/", 0) == 0 || wanted.rfind("gpiochip", 0) == 0) {
-    const std::string path = wanted[0] == '/' ? wanted : "/dev/" + wanted;
+  if (const std::string path = gpio_chip_path(wanted); !path.empty()) {
     Chip chip(gpiod_chip_open(path.c_str()));
     if (!chip) return gpio_failure(device, "open", errno);
     return chip;
   }
   int refused = ENOENT;
-  for (int number = 0; number < kMostChips; ++number) {
-    if (access(chip_path(number).c_str(), F_OK) != 0) continue;
-    Chip chip(gpiod_chip_open(chip_path(number).c_str()));
+  for (int number = 0; number < kMostGpioChips; ++number) {
+    if (access(gpio_chip_path(number).c_str(), F_OK) != 0) continue;
+    Chip chip(gpiod_chip_open(gpio_chip_path(number).c_str()));
     if (chip && wanted == gpiod_chip_label(chip.get())) return chip;
     if (!chip) refused = errno;  // the one that is wanted may be behind it
   }
   return gpio_failure(device, "open", refused);
 }
 
-Result<gpiod_line*> find_line(gpiod_chip* chip, const std::string& wanted, const std::string& device) {
-  if (const long number = gpio_line_number(wanted); number >= 0) {
-    if (number >= static_cast<long>(gpiod_chip_num_lines(chip)))
-      return fail(ErrorCode::invalid_argument, device, "open",
-                  fmt::format("the chip has lines 0 to {}", gpiod_chip_num_lines(chip) - 1));
-    gpiod_line* line = gpiod_chip_get_line(chip, static_cast<unsigned>(number));
-    if (line == nullptr) return gpio_failure(device, "open", errno);
-    return line;
-  }
-  gpiod_line* found = nullptr;
-  for (unsigned offset = 0; offset < gpiod_chip_num_lines(chip); ++offset) {
-    gpiod_line* line = gpiod_chip_get_line(chip, offset);
-    if (line == nullptr) return gpio_failure(device, "open", errno);
-    const char* name = gpiod_line_name(line);
-    if (name == nullptr || wanted != name) continue;
-    if (found != nullptr)
-      return fail(ErrorCode::invalid_argument, device, "open",
-                  fmt::format("lines {} and {} both have this name", gpiod_line_offset(found), offset),
-                  "Give the number of the line");
-    found = line;
-  }
-  if (found == nullptr)
-    return fail(ErrorCode::not_present, device, "open", "the chip has no line of this name",
-                "See what there is: gpioinfo, of the package gpiod");
-  return found;
+Result<gpiod_line*> find_line(gpiod_chip* chip, const GpioLineConfig& wanted) {
+  const std::string device = gpio_name({wanted});
+  const auto offset =
+      find_gpio_line(wanted, gpiod_chip_num_lines(chip), [&](unsigned i) -> Result<std::string> {
+        gpiod_line* line = gpiod_chip_get_line(chip, i);
+        if (line == nullptr) return gpio_failure(device, "open", errno);
+        const char* name = gpiod_line_name(line);
+        return std::string(name == nullptr ? "" : name);
+      });
+  if (!offset) return fail(offset.error());
+  gpiod_line* line = gpiod_chip_get_line(chip, *offset);
+  if (line == nullptr) return gpio_failure(device, "open", errno);
+  return line;
 }
 
 int flags_of(const GpioLineConfig& config) {
@@ -81,6 +65,8 @@ int flags_of(const GpioLineConfig& config) {
   return flags;
 }
 
+static_assert(kMostGpioLines <= GPIOD_LINE_BULK_MAX_LINES);
+
 // Lines of one chip, requested together.
 struct Request {
   Chip chip;
@@ -91,8 +77,7 @@ struct Request {
 Result<Request> request(const std::vector<GpioLineConfig>& configs, int type) {
   const GpioLineConfig& first = configs.front();
   Request made;
-  made.name = fmt::format("gpio {}/{}", first.chip, first.line);
-  for (std::size_t i = 1; i < configs.size(); ++i) made.name += "+" + configs[i].line;
+  made.name = gpio_name(configs);
   if (first.debounce > Duration::zero())
     return fail(ErrorCode::unsupported, made.name, "open", "libgpiod 1 cannot debounce",
                 "Leave debounce_ms out, or build with libgpiod 2");
@@ -100,8 +85,7 @@ Result<Request> request(const std::vector<GpioLineConfig>& configs, int type) {
   if (!chip) return fail(std::move(chip).error());
   made.chip = *std::move(chip);
   for (const GpioLineConfig& config : configs) {
-    const auto line =
-        find_line(made.chip.get(), config.line, fmt::format("gpio {}/{}", config.chip, config.line));
+    const auto line = find_line(made.chip.get(), config);
     if (!line) return fail(line.error());
     gpiod_line_bulk_add(&made.lines, *line);
   }
@@ -113,8 +97,7 @@ Result<Request> request(const std::vector<GpioLineConfig>& configs, int type) {
     gpiod_line* line = gpiod_line_bulk_get_line(&made.lines, i);
     if (error != EBUSY || gpiod_line_update(line) != 0 || !gpiod_line_is_used(line)) continue;
     const char* consumer = gpiod_line_consumer(line);
-    return gpio_failure(fmt::format("gpio {}/{}", first.chip, configs[i].line), "open", error,
-                        consumer == nullptr ? "" : consumer);
+    return gpio_failure(gpio_name({configs[i]}), "open", error, consumer == nullptr ? "" : consumer);
   }
   return gpio_failure(made.name, "open", error);
 }
@@ -234,12 +217,7 @@ Result<std::unique_ptr<DigitalOut>> open_gpio_out(const GpioLineConfig& config) 
 }
 
 Result<std::unique_ptr<DigitalOutGroup>> open_gpio_group(const std::vector<GpioLineConfig>& lines) {
-  if (lines.empty() || lines.size() > GPIOD_LINE_BULK_MAX_LINES)
-    return fail(ErrorCode::invalid_argument, "gpio group", "open", "a group has 1 to 64 lines");
-  for (const GpioLineConfig& line : lines)
-    if (line.chip != lines[0].chip || flags_of(line) != flags_of(lines[0]))
-      return fail(ErrorCode::invalid_argument, "gpio group", "open",
-                  "the lines differ in chip, polarity, bias or drive");
+  FORAGER_TRY(check_gpio_group(lines));
   auto made = request(lines, GPIOD_LINE_REQUEST_DIRECTION_OUTPUT);
   if (!made) return fail(std::move(made).error());
   return std::make_unique<Group>(*std::move(made), lines[0].at_end);
@@ -250,18 +228,16 @@ Result<std::unique_ptr<DigitalIn>> open_gpio_in(const GpioLineConfig& config) {
 }
 
 Result<std::unique_ptr<EdgeIn>> open_gpio_edges(const GpioLineConfig& config) {
-  if (config.edges == GpioEdges::none)
-    return fail(ErrorCode::invalid_argument, fmt::format("gpio {}/{}", config.chip, config.line), "open",
-                "edges are wanted, and none are configured");
+  FORAGER_TRY(check_gpio_edges(config));
   return open_in(config).map([](auto in) -> std::unique_ptr<EdgeIn> { return in; });
 }
 
 Result<std::vector<GpioLineFacts>> list_gpio() {
   std::vector<GpioLineFacts> facts;
   int refused = 0;
-  for (int number = 0; number < kMostChips; ++number) {
-    if (access(chip_path(number).c_str(), F_OK) != 0) continue;
-    const Chip chip(gpiod_chip_open(chip_path(number).c_str()));
+  for (int number = 0; number < kMostGpioChips; ++number) {
+    if (access(gpio_chip_path(number).c_str(), F_OK) != 0) continue;
+    const Chip chip(gpiod_chip_open(gpio_chip_path(number).c_str()));
     if (!chip) refused = errno;
     for (unsigned offset = 0; chip && offset < gpiod_chip_num_lines(chip.get()); ++offset) {
       gpiod_line* line = gpiod_chip_get_line(chip.get(), offset);

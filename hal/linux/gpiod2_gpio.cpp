@@ -9,12 +9,10 @@
 
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/gpio_error.hpp"
+#include "hal/linux/gpio_request.hpp"
 
 namespace forager::hal {
 namespace {
-
-constexpr int kMostChips = 64;
-constexpr std::size_t kMostLines = 64;
 
 template <auto Free>
 struct Delete {
@@ -32,21 +30,19 @@ using RequestConfig = std::unique_ptr<gpiod_request_config, Delete<gpiod_request
 using LineRequest = std::unique_ptr<gpiod_line_request, Delete<gpiod_line_request_release>>;
 using EventBuffer = std::unique_ptr<gpiod_edge_event_buffer, Delete<gpiod_edge_event_buffer_free>>;
 
-std::string chip_path(int number) { return fmt::format("/dev/gpiochip{}", number); }
 std::string text(const char* words) { return words == nullptr ? std::string() : std::string(words); }
 
 // By path, by name, or by label.
 Result<Chip> open_chip(const std::string& wanted, const std::string& device) {
-  if (wanted.rfind("/dev/", 0) == 0 || wanted.rfind("gpiochip", 0) == 0) {
-    const std::string path = wanted[0] == '/' ? wanted : "/dev/" + wanted;
+  if (const std::string path = gpio_chip_path(wanted); !path.empty()) {
     Chip chip(gpiod_chip_open(path.c_str()));
     if (!chip) return gpio_failure(device, "open", errno);
     return chip;
   }
   int refused = ENOENT;
-  for (int number = 0; number < kMostChips; ++number) {
-    if (access(chip_path(number).c_str(), F_OK) != 0) continue;
-    Chip chip(gpiod_chip_open(chip_path(number).c_str()));
+  for (int number = 0; number < kMostGpioChips; ++number) {
+    if (access(gpio_chip_path(number).c_str(), F_OK) != 0) continue;
+    Chip chip(gpiod_chip_open(gpio_chip_path(number).c_str()));
     const ChipInfo info(chip ? gpiod_chip_get_info(chip.get()) : nullptr);
     if (info && wanted == gpiod_chip_info_get_label(info.get())) return chip;
     if (!chip) refused = errno;  // the one that is wanted may be behind it
@@ -54,29 +50,16 @@ Result<Chip> open_chip(const std::string& wanted, const std::string& device) {
   return gpio_failure(device, "open", refused);
 }
 
-Result<unsigned> find_line(gpiod_chip* chip, const std::string& wanted, const std::string& device) {
+Result<unsigned> find_line(gpiod_chip* chip, const GpioLineConfig& wanted) {
+  const std::string device = gpio_name({wanted});
   const ChipInfo info(gpiod_chip_get_info(chip));
   if (!info) return gpio_failure(device, "open", errno);
-  const std::size_t lines = gpiod_chip_info_get_num_lines(info.get());
-  if (const long number = gpio_line_number(wanted); number >= 0) {
-    if (static_cast<std::size_t>(number) >= lines)
-      return fail(ErrorCode::invalid_argument, device, "open",
-                  fmt::format("the chip has lines 0 to {}", lines - 1));
-    return static_cast<unsigned>(number);
-  }
-  std::vector<unsigned> found;
-  for (unsigned offset = 0; offset < lines; ++offset) {
+  const std::size_t count = gpiod_chip_info_get_num_lines(info.get());
+  return find_gpio_line(wanted, count, [&](unsigned offset) -> Result<std::string> {
     const LineInfo line(gpiod_chip_get_line_info(chip, offset));
-    if (line && wanted == text(gpiod_line_info_get_name(line.get()))) found.push_back(offset);
-  }
-  if (found.size() > 1)
-    return fail(ErrorCode::invalid_argument, device, "open",
-                fmt::format("lines {} and {} both have this name", found[0], found[1]),
-                "Give the number of the line");
-  if (found.empty())
-    return fail(ErrorCode::not_present, device, "open", "the chip has no line of this name",
-                "See what there is: gpioinfo, of the package gpiod");
-  return found[0];
+    if (!line) return gpio_failure(device, "open", errno);
+    return text(gpiod_line_info_get_name(line.get()));
+  });
 }
 
 Settings settings_of(const GpioLineConfig& config, bool output) {
@@ -119,13 +102,11 @@ std::string holder_of(gpiod_chip* chip, const std::vector<unsigned>& offsets) {
 Result<Request> request(const std::vector<GpioLineConfig>& configs, bool output) {
   const GpioLineConfig& first = configs.front();
   Request made;
-  made.name = fmt::format("gpio {}/{}", first.chip, first.line);
-  for (std::size_t i = 1; i < configs.size(); ++i) made.name += "+" + configs[i].line;
+  made.name = gpio_name(configs);
   const auto chip = open_chip(first.chip, made.name);
   if (!chip) return fail(chip.error());
   for (const GpioLineConfig& config : configs) {
-    const auto line =
-        find_line(chip->get(), config.line, fmt::format("gpio {}/{}", config.chip, config.line));
+    const auto line = find_line(chip->get(), config);
     if (!line) return fail(line.error());
     made.offsets.push_back(*line);
   }
@@ -147,7 +128,7 @@ class Out final : public DigitalOut, public DigitalOutGroup {
  public:
   Out(Request request, GpioAtEnd at_end) : request_(std::move(request)), at_end_(at_end) {}
   ~Out() override {
-    const std::array<bool, kMostLines> inactive{};
+    const std::array<bool, kMostGpioLines> inactive{};
     if (at_end_ == GpioAtEnd::inactive)
       static_cast<void>(do_set(std::span(inactive).first(request_.offsets.size())));
   }
@@ -157,7 +138,7 @@ class Out final : public DigitalOut, public DigitalOutGroup {
  private:
   Result<> do_set(bool active) override { return do_set(std::span(&active, 1)); }
   Result<> do_set(std::span<const bool> active) override {
-    std::array<gpiod_line_value, kMostLines> values{};
+    std::array<gpiod_line_value, kMostGpioLines> values{};
     std::transform(active.begin(), active.end(), values.begin(),
                    [](bool on) { return on ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE; });
     if (gpiod_line_request_set_values(request_.lines.get(), values.data()) != 0)
@@ -221,13 +202,7 @@ Result<std::unique_ptr<DigitalOut>> open_gpio_out(const GpioLineConfig& config) 
 }
 
 Result<std::unique_ptr<DigitalOutGroup>> open_gpio_group(const std::vector<GpioLineConfig>& lines) {
-  if (lines.empty() || lines.size() > kMostLines)
-    return fail(ErrorCode::invalid_argument, "gpio group", "open", "a group has 1 to 64 lines");
-  for (const GpioLineConfig& line : lines)
-    if (line.chip != lines[0].chip || line.active_low != lines[0].active_low || line.bias != lines[0].bias ||
-        line.drive != lines[0].drive)
-      return fail(ErrorCode::invalid_argument, "gpio group", "open",
-                  "the lines differ in chip, polarity, bias or drive");
+  FORAGER_TRY(check_gpio_group(lines));
   auto made = request(lines, true);
   if (!made) return fail(std::move(made).error());
   return std::make_unique<Out>(*std::move(made), lines[0].at_end);
@@ -238,18 +213,16 @@ Result<std::unique_ptr<DigitalIn>> open_gpio_in(const GpioLineConfig& config) {
 }
 
 Result<std::unique_ptr<EdgeIn>> open_gpio_edges(const GpioLineConfig& config) {
-  if (config.edges == GpioEdges::none)
-    return fail(ErrorCode::invalid_argument, fmt::format("gpio {}/{}", config.chip, config.line), "open",
-                "edges are wanted, and none are configured");
+  FORAGER_TRY(check_gpio_edges(config));
   return open_in(config).map([](auto in) -> std::unique_ptr<EdgeIn> { return in; });
 }
 
 Result<std::vector<GpioLineFacts>> list_gpio() {
   std::vector<GpioLineFacts> facts;
   int refused = 0;
-  for (int number = 0; number < kMostChips; ++number) {
-    if (access(chip_path(number).c_str(), F_OK) != 0) continue;
-    const Chip chip(gpiod_chip_open(chip_path(number).c_str()));
+  for (int number = 0; number < kMostGpioChips; ++number) {
+    if (access(gpio_chip_path(number).c_str(), F_OK) != 0) continue;
+    const Chip chip(gpiod_chip_open(gpio_chip_path(number).c_str()));
     if (!chip) refused = errno;
     const ChipInfo about(chip ? gpiod_chip_get_info(chip.get()) : nullptr);
     for (unsigned offset = 0; about && offset < gpiod_chip_info_get_num_lines(about.get()); ++offset) {

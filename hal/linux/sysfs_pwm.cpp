@@ -67,7 +67,10 @@ class Channel final : public PwmChannel {
 class Group final : public SysfsPwm {
  public:
   Group(Kernel& kernel, std::string chip, const SysfsPwmConfig& config)
-      : kernel_(&kernel), name_("pwm " + chip), folder_(std::string(kClass) + chip), period_(config.period) {
+      : kernel_(&kernel),
+        name_("pwm " + chip),
+        folder_(chip.starts_with('/') ? chip : std::string(kClass) + chip),
+        period_(config.period) {
     for (const std::uint32_t index : config.channels)
       channels_.emplace_back(*this, fmt::format("{}/pwm{}", folder_, index),
                              fmt::format("pwm {}/{}", chip, index));
@@ -197,8 +200,10 @@ Result<> Group::do_set_period(Duration period) {
   return {};
 }
 
-// The chip by its name in /sys/class/pwm, or by that of its device: numbers change from kernel to kernel.
+// The chip by its name in /sys/class/pwm, by that of its device, or by its path: numbers change from kernel
+// to kernel.
 std::string find_chip(Kernel& kernel, const std::string& wanted) {
+  if (wanted.starts_with('/')) return kernel.list(wanted).empty() ? std::string() : wanted;
   for (const std::string& name : kernel.list("/sys/class/pwm")) {
     const std::string device = kernel.link(std::string(kClass) + name + "/device");
     if (name == wanted || device.substr(device.rfind('/') + 1) == wanted) return name;

@@ -13,7 +13,9 @@
 namespace forager::hal {
 
 struct SysfsPwmConfig {
-  std::string chip = "pwmchip0";  // a name in /sys/class/pwm, or of the device behind it: "fe20c000.pwm"
+  // A name in /sys/class/pwm, that of the device behind it ("fe20c000.pwm"), or the path of the chip's
+  // folder.
+  std::string chip = "pwmchip0";
   std::vector<std::uint32_t> channels;  // which of its channels
   bool inverted = false;                // the active part of the period is low
   Duration period = std::chrono::milliseconds(20);
