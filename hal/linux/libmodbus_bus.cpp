@@ -1,9 +1,12 @@
 // libmodbus 3.1. Twin: absent_libmodbus_bus.cpp.
 #include <fmt/format.h>
 #include <modbus/modbus.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
+#include <utility>
 
 #include "hal/linux/kernel.hpp"
 #include "hal/linux/modbus_bus.hpp"
@@ -21,7 +24,8 @@ using Context = std::unique_ptr<modbus_t, FreeContext>;
 
 class LibmodbusBus final : public Modbus {
  public:
-  LibmodbusBus(Context context, std::string name) : context_(std::move(context)), name_(std::move(name)) {}
+  LibmodbusBus(Context context, std::string name, Duration timeout)
+      : context_(std::move(context)), name_(std::move(name)), timeout_(timeout) {}
 
  private:
   Result<> do_read(Table table, std::uint8_t unit, std::uint16_t address,
@@ -49,15 +53,45 @@ class LibmodbusBus final : public Modbus {
   [[nodiscard]] std::string_view do_name() const override { return name_; }
 
   Result<> ready(std::uint8_t unit);
+  void hear_late_answer();
+  [[nodiscard]] Failure silence(std::string operation);
   Result<> judge(int answer, std::string operation);
 
   Context context_;
   std::string name_;
+  Duration timeout_;
+  std::uint8_t unit_ = 0;
+  std::optional<std::uint8_t> silent_unit_;  // whose answer did not come in time
+  std::optional<std::uint8_t> late_unit_;    // whose answer was there when the next question was asked
   bool connected_ = false;
 };
 
+// An answer that came too late must not be taken for that to the next question: on a serial line nothing in
+// it would tell. That it came at all is worth knowing.
+void LibmodbusBus::hear_late_answer() {
+  if (!silent_unit_) return;
+  int waiting = 0;
+  if (::ioctl(modbus_get_socket(context_.get()), FIONREAD, &waiting) == 0 && waiting > 0)
+    late_unit_ = silent_unit_;
+  silent_unit_.reset();
+  modbus_flush(context_.get());
+}
+
+Failure LibmodbusBus::silence(std::string operation) {
+  silent_unit_ = unit_;
+  if (late_unit_ == unit_)
+    return fail(ErrorCode::timeout, name_, std::move(operation),
+                fmt::format("the answer comes, but later than the {} ms it is waited for",
+                            timeout_ / std::chrono::milliseconds(1)),
+                "Raise timeout_ms of the board file above what the device needs");
+  return fail(ErrorCode::timeout, name_, std::move(operation), "no answer",
+              "Check the unit's number, baud rate, power and wires A and B");
+}
+
 Result<> LibmodbusBus::ready(std::uint8_t unit) {
+  unit_ = unit;
   modbus_set_slave(context_.get(), unit);
+  if (connected_) hear_late_answer();
   if (connected_) return {};
   if (modbus_connect(context_.get()) == 0) {
     connected_ = true;
@@ -72,7 +106,10 @@ Result<> LibmodbusBus::ready(std::uint8_t unit) {
 }
 
 Result<> LibmodbusBus::judge(int answer, std::string operation) {
-  if (answer >= 0) return {};
+  if (answer >= 0) {
+    if (late_unit_ == unit_) late_unit_.reset();
+    return {};
+  }
   const int error = errno;
   if (error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX)
     return modbus_exception(name_, operation, static_cast<std::uint8_t>(error - MODBUS_ENOBASE));
@@ -82,8 +119,7 @@ Result<> LibmodbusBus::judge(int answer, std::string operation) {
   };
   switch (error) {
     case ETIMEDOUT:
-      return failed(ErrorCode::timeout, "no answer",
-                    "Check the unit's number, baud rate, power and wires A and B");
+      return silence(std::move(operation));
     case EMBBADCRC:
       return failed(ErrorCode::protocol, "the answer's CRC is wrong",
                     "Check shielding, termination and parity");
@@ -111,7 +147,7 @@ Result<std::unique_ptr<Modbus>> make(modbus_t* raw, std::string name, Duration t
       std::min<std::int64_t>(timeout / std::chrono::microseconds(1), 3'600'000'000));
   modbus_set_response_timeout(context.get(), us / 1'000'000, us % 1'000'000);
   modbus_set_byte_timeout(context.get(), us / 1'000'000, us % 1'000'000);
-  return std::make_unique<LibmodbusBus>(std::move(context), std::move(name));
+  return std::make_unique<LibmodbusBus>(std::move(context), std::move(name), timeout);
 }
 
 }  // namespace
