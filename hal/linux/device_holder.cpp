@@ -1,7 +1,6 @@
 #include "hal/linux/device_holder.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -28,9 +27,8 @@ std::string real_device(Kernel& kernel, std::string path) {
 
 std::string holder_of(Kernel& kernel, const std::string& path) {
   const std::string device = real_device(kernel, path);
-  const std::string self = std::to_string(::getpid());
   for (const std::string& process : kernel.list("/proc")) {
-    if (!is_number(process) || process == self) continue;
+    if (!is_number(process)) continue;
     const std::string folder = "/proc/" + process;
     for (const std::string& fd : kernel.list(folder + "/fd")) {
       if (kernel.link(folder + "/fd/" + fd) != device) continue;

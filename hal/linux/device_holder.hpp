@@ -10,8 +10,8 @@ namespace forager::hal {
 // link stays as it is.
 [[nodiscard]] std::string real_device(Kernel& kernel, std::string path);
 
-// Who has a device file open: "process 812 (ModemManager)", from /proc. Empty if nobody is seen; processes of
-// other users are seen by root only.
+// Who has a device file open: "process 812 (ModemManager)", from /proc, this one included. Empty if nobody is
+// seen; processes of other users are seen by root only.
 [[nodiscard]] std::string holder_of(Kernel& kernel, const std::string& path);
 
 }  // namespace forager::hal

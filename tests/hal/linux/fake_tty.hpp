@@ -29,6 +29,7 @@ class FakeTty final : public Node {
     open_flags = flags;
     return exclusive ? -EBUSY : -open_errno;
   }
+  void close() override { exclusive = false; }  // the flag goes with the last who has it open
   int lock() override { return locked_by_another ? -EAGAIN : 0; }
   long read(std::string& into) override {
     if (unplugged) return 0;  // a port that hung up is at its end
