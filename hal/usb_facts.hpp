@@ -32,19 +32,19 @@ struct UsbDeviceFacts {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   std::uint16_t release = 0;  // bcdDevice: 0x0600 is version 6.00
-  std::string serial;         // empty: it has none
-  std::string manufacturer;
-  std::string product_name;
-  std::string path;  // bus and ports, the same as long as nobody moves the plug: "1-2.4"
-  std::vector<UsbInterfaceFacts> interfaces;
+  std::string serial{};       // empty: it has none
+  std::string manufacturer{};
+  std::string product_name{};
+  std::string path{};  // bus and ports, the same as long as nobody moves the plug: "1-2.4"
+  std::vector<UsbInterfaceFacts> interfaces{};
 };
 
 // Which device is meant; what is empty fits every device.
 struct UsbMatch {
-  std::optional<std::uint16_t> vendor;
-  std::optional<std::uint16_t> product;
-  std::string serial;
-  std::string path;
+  std::optional<std::uint16_t> vendor{};
+  std::optional<std::uint16_t> product{};
+  std::string serial{};
+  std::string path{};
 };
 
 [[nodiscard]] bool fits(const UsbMatch& match, const UsbDeviceFacts& device);

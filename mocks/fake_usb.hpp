@@ -25,8 +25,9 @@ struct FakeUsbSocket {
   std::vector<std::pair<const void*, std::function<void()>>> before_unplug;  // what is under way arrives
 };
 
-// A USB with emulated devices plugged in. Time does not pass while a call waits: where a device says "not
-// now", the time-out comes at once.
+// A USB with emulated devices plugged in. Its time passes with calls alone: one frame, of a millisecond, with
+// each call of a pipe, and as many as the time-out has where a blocking call waits, which takes no time
+// outside. The plug is pulled 20 frames after unplug() was called: by then what the device holds has arrived.
 class FakeUsb final : public hal::Usb {
  public:
   // The device must stay until it was unplugged or this object has ended. What is not plugged in is left

@@ -7,6 +7,13 @@ namespace forager::mocks {
 
 using hal::ErrorCode;
 
+namespace {
+
+constexpr hal::Duration kFrame = std::chrono::milliseconds(1);  // of full speed; high speed has eighths
+constexpr int kLastFrames = 20;
+
+}  // namespace
+
 FakeUsbDevice::FakeUsbDevice(std::shared_ptr<FakeUsbSocket> socket)
     : hal::UsbDevice(socket->facts), socket_(std::move(socket)) {
   socket_->before_unplug.emplace_back(this, [this] { everything_arrives(); });
@@ -97,25 +104,47 @@ SimUsbAnswer FakeUsbDevice::send(const hal::UsbEndpointFacts& endpoint, Transfer
   return SimUsbAnswer::ack;
 }
 
+template <class Act>
+void FakeUsbDevice::each_pipe(const Act& act) {
+  for (const hal::UsbInterfaceFacts& interface : facts().interfaces)
+    for (const hal::UsbEndpointFacts& endpoint : interface.endpoints)
+      if (auto& pipe = pipes_[endpoint.address]) act(endpoint, *pipe);
+}
+
+// The controller serves every endpoint by itself.
+void FakeUsbDevice::frame() {
+  if (!socket_->plugged) return;
+  socket_->device->start_of_frame();
+  each_pipe([this](const auto& endpoint, Pipe& pipe) {
+    endpoint.in() ? pump_in(endpoint, pipe) : pump_out(endpoint, pipe);
+  });
+}
+
 hal::Result<std::size_t> FakeUsbDevice::do_bulk_in(const hal::UsbEndpointFacts& endpoint,
-                                                   std::span<std::byte> into, hal::Duration) {
+                                                   std::span<std::byte> into, hal::Duration at_most) {
   if (auto admitted = admit("read"); !admitted) return hal::fail(std::move(admitted).error());
   Transfer transfer{std::vector<std::byte>(into.size())};
   bool ended = false;
-  if (fill(endpoint, transfer, ended) == SimUsbAnswer::stall) return stalled("read");
+  for (hal::Duration waited{}; !ended && waited < at_most; waited += kFrame) {
+    if (fill(endpoint, transfer, ended) == SimUsbAnswer::stall) return stalled("read");
+    if (!ended) frame();
+  }
   if (!ended && transfer.done == 0) return failed(ErrorCode::timeout, "read", "nothing came");
   std::copy_n(transfer.bytes.begin(), transfer.done, into.begin());
   return transfer.done;
 }
 
 hal::Result<> FakeUsbDevice::do_bulk_out(const hal::UsbEndpointFacts& endpoint,
-                                         std::span<const std::byte> bytes, hal::Duration) {
+                                         std::span<const std::byte> bytes, hal::Duration at_most) {
   FORAGER_TRY(admit("write"));
   Transfer transfer{{bytes.begin(), bytes.end()}};
-  const SimUsbAnswer answer = send(endpoint, transfer);
-  if (answer == SimUsbAnswer::stall) return stalled("write");
-  if (answer == SimUsbAnswer::nak) return failed(ErrorCode::timeout, "write", "the device takes no more");
-  return {};
+  for (hal::Duration waited{}; waited < at_most; waited += kFrame) {
+    const SimUsbAnswer answer = send(endpoint, transfer);
+    if (answer == SimUsbAnswer::stall) return stalled("write");
+    if (answer == SimUsbAnswer::ack) return {};
+    frame();
+  }
+  return failed(ErrorCode::timeout, "write", "the device takes no more");
 }
 
 hal::Result<> FakeUsbDevice::do_clear_halt(const hal::UsbEndpointFacts& endpoint) {
@@ -152,24 +181,17 @@ void FakeUsbDevice::pump_out(const hal::UsbEndpointFacts& endpoint, Pipe& pipe) 
 }
 
 void FakeUsbDevice::everything_arrives() {
-  for (const hal::UsbInterfaceFacts& interface : facts().interfaces) {
-    for (const hal::UsbEndpointFacts& endpoint : interface.endpoints) {
-      auto& pipe = pipes_[endpoint.address];
-      if (!pipe) continue;
-      if (!endpoint.in()) {
-        pump_out(endpoint, *pipe);
-        continue;
-      }
-      pump_in(endpoint, *pipe);
-      if (pipe->filling && pipe->filling->done > 0)
-        pipe->ended.push_back(*std::exchange(pipe->filling, std::nullopt));
-    }
-  }
+  for (int i = 0; i < kLastFrames; ++i) frame();
+  each_pipe([](const auto&, Pipe& pipe) {
+    if (pipe.filling && pipe.filling->done > 0)
+      pipe.ended.push_back(*std::exchange(pipe.filling, std::nullopt));
+  });
 }
 
 hal::Result<std::optional<std::size_t>> FakeUsbDevice::do_poll_in(const hal::UsbEndpointFacts& endpoint,
                                                                   std::span<std::byte> into) {
   Pipe& pipe = *pipes_[endpoint.address];
+  frame();
   pump_in(endpoint, pipe);
   if (pipe.ended.empty()) {
     if (auto admitted = admit("read"); !admitted) return hal::fail(std::move(admitted).error());
@@ -187,6 +209,7 @@ hal::Result<std::size_t> FakeUsbDevice::do_push_out(const hal::UsbEndpointFacts&
                                                     std::span<const std::byte> bytes) {
   if (auto admitted = admit("write"); !admitted) return hal::fail(std::move(admitted).error());
   Pipe& pipe = *pipes_[endpoint.address];
+  frame();
   pump_out(endpoint, pipe);
   if (pipe.stalled) return stalled("write");
   std::size_t taken = 0;
@@ -199,11 +222,14 @@ hal::Result<std::size_t> FakeUsbDevice::do_push_out(const hal::UsbEndpointFacts&
   return taken;
 }
 
-hal::Result<> FakeUsbDevice::do_drain(const hal::UsbEndpointFacts& endpoint, hal::Duration) {
+hal::Result<> FakeUsbDevice::do_drain(const hal::UsbEndpointFacts& endpoint, hal::Duration at_most) {
   FORAGER_TRY(admit("drain"));
   Pipe& pipe = *pipes_[endpoint.address];
-  pump_out(endpoint, pipe);
-  if (pipe.stalled) return stalled("drain");
+  for (hal::Duration waited{}; !pipe.leaving.empty() && waited < at_most; waited += kFrame) {
+    pump_out(endpoint, pipe);
+    if (pipe.stalled) return stalled("drain");
+    frame();
+  }
   if (!pipe.leaving.empty()) return failed(ErrorCode::timeout, "drain", "the device takes no more");
   return {};
 }

@@ -55,6 +55,9 @@ class FakeUsbDevice final : public hal::UsbDevice {
   void pump_in(const hal::UsbEndpointFacts& endpoint, Pipe& pipe);
   void pump_out(const hal::UsbEndpointFacts& endpoint, Pipe& pipe);
   void everything_arrives();
+  template <class Act>
+  void each_pipe(const Act& act);
+  void frame();
   [[nodiscard]] hal::Failure stalled(const std::string& operation) const;
   [[nodiscard]] std::size_t index_of(std::uint8_t interface) const;
   void unclaim(std::size_t index);

@@ -35,6 +35,8 @@ class SimUsbDevice {
   virtual SimUsbAnswer packet_out(std::uint8_t endpoint, std::span<const std::byte> packet) = 0;
   virtual SimUsbPacket packet_in(std::uint8_t endpoint, std::span<std::byte> into) = 0;
   virtual void clear_halt(std::uint8_t endpoint) = 0;
+  // A millisecond has passed on the bus: the clock of devices that have none of their own.
+  virtual void start_of_frame() {}
   // The plug is in, or out: what a power cycle does to it.
   virtual void power(bool on) = 0;
 };
