@@ -4,12 +4,22 @@
 #include <string>
 
 namespace forager::servo {
+namespace {
 
-hal::Result<> DigitalBrake::do_move(double fraction, hal::Instant) {
+constexpr hal::Duration kRefresh = std::chrono::milliseconds(500);  // as Servo's
+
+}  // namespace
+
+hal::Result<> DigitalBrake::do_move(double fraction, hal::Instant now) {
   if (std::isnan(fraction))
     return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + std::string(line_->name()), "move",
                      "not a number was commanded");
-  return lock(fraction >= 0.5);
+  if (refresh_at_ && now >= *refresh_at_) sent_.reset();
+  const bool locks = fraction >= 0.5;
+  const bool tells = sent_ != locks;
+  FORAGER_TRY(lock(locks));
+  if (tells || !refresh_at_) refresh_at_ = now + kRefresh;
+  return {};
 }
 
 hal::Result<> DigitalBrake::lock(bool locked) {

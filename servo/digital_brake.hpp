@@ -14,7 +14,8 @@ enum class WhenActive : std::uint8_t {
   locks,  // a crash of the program leaves it as it was
 };
 
-// A solenoid or relay that either locks a brake or opens it: from one half up it locks.
+// A solenoid or relay that either locks a brake or opens it: from one half up it locks. Its line is set when
+// that changes, and every half second.
 class DigitalBrake final : public BrakeActuator {
  public:
   // Borrows the line.
@@ -23,6 +24,7 @@ class DigitalBrake final : public BrakeActuator {
 
  private:
   hal::Result<> do_move(double fraction, hal::Instant now) override;
+  void do_forget() override { sent_.reset(); }
   [[nodiscard]] double do_commanded() const override { return locked_ ? 1.0 : 0.0; }
   [[nodiscard]] std::string_view do_name() const override { return line_->name(); }
   hal::Result<> lock(bool locked);
@@ -31,6 +33,7 @@ class DigitalBrake final : public BrakeActuator {
   WhenActive active_;
   bool locked_ = true;
   std::optional<bool> sent_;
+  std::optional<hal::Instant> refresh_at_;
 };
 
 }  // namespace forager::servo

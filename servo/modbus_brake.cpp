@@ -15,9 +15,9 @@ constexpr hal::Duration kLongestStep = std::chrono::milliseconds(100);  // as Se
 
 hal::Result<ModbusBrake> ModbusBrake::create(hal::Modbus& bus, const ModbusBrakeConfig& config) {
   if (config.open_value == config.locked_value || !(config.slew_per_s > 0.0) ||
-      !std::isfinite(config.slew_per_s))
+      !std::isfinite(config.slew_per_s) || config.refresh <= hal::Duration::zero())
     return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + std::string(bus.name()), "create",
-                     "open and locked are the same, or the slew limit is not a positive number");
+                     "open and locked are the same, or slew limit or refresh is not a positive number");
   return ModbusBrake(bus, config);
 }
 
@@ -32,8 +32,28 @@ hal::Result<> ModbusBrake::do_move(double fraction, hal::Instant now) {
       last_ ? std::clamp(now - *last_, hal::Duration::zero(), kLongestStep) : hal::Duration::zero();
   last_ = now;
   const double step = config_.slew_per_s * hal::to_seconds(passed);
-  FORAGER_TRY(send(std::clamp(std::clamp(fraction, 0.0, 1.0), place_ - step, place_ + step)));
+  FORAGER_TRY(tell(std::clamp(std::clamp(fraction, 0.0, 1.0), place_ - step, place_ + step), now));
   return measure(now);
+}
+
+hal::Result<> ModbusBrake::do_jump(double fraction, hal::Instant now) {
+  if (std::isnan(fraction)) return do_move(fraction, now);
+  last_ = now;
+  FORAGER_TRY(tell(std::clamp(fraction, 0.0, 1.0), now));
+  return measure(now);
+}
+
+void ModbusBrake::do_forget() {
+  sent_.reset();
+  enabled_ = false;
+}
+
+hal::Result<> ModbusBrake::tell(double place, hal::Instant now) {
+  if (refresh_at_ && now >= *refresh_at_) do_forget();
+  const bool anew = !sent_;
+  FORAGER_TRY(send(place));
+  if (anew || !refresh_at_) refresh_at_ = now + config_.refresh;
+  return {};
 }
 
 hal::Result<> ModbusBrake::send(double place) {
@@ -64,8 +84,7 @@ hal::Result<> ModbusBrake::measure(hal::Instant now) {
 }
 
 void ModbusBrake::halt() noexcept {
-  sent_.reset();
-  enabled_ = false;
+  do_forget();
   static_cast<void>(send(1.0));
 }
 

@@ -20,23 +20,28 @@ struct ModbusBrakeConfig {
   double slew_per_s = 4.0;                           // travels per second
   // The bus is slow: the measured position is read no more often than this.
   hal::Duration poll_interval = std::chrono::milliseconds(100);
+  // Coil and target are written again this often, for an actuator that lost its supply for a moment.
+  hal::Duration refresh = std::chrono::milliseconds(500);
 };
 
-// A linear actuator on Modbus that presses a brake. A target is written when it changes, and again after a
-// failure. Each move() costs at most one write and one read on the bus. After a crash the actuator stays
-// where it is: choose one whose own time-out locks it.
+// A linear actuator on Modbus that presses a brake. A target is written when it changes, after a failure and
+// every refresh. Each move() costs at most one write and one read on the bus, and one more write where a coil
+// enables it. After a crash the actuator stays where it is: choose one whose own time-out locks it.
 class ModbusBrake final : public BrakeActuator {
  public:
-  // Borrows the bus. Errors: invalid_argument (open and locked the same, slew not positive).
+  // Borrows the bus. Errors: invalid_argument (open and locked the same, slew or refresh not positive).
   [[nodiscard]] static hal::Result<ModbusBrake> create(hal::Modbus& bus, const ModbusBrakeConfig& config);
   void halt() noexcept override;
 
  private:
   ModbusBrake(hal::Modbus& bus, const ModbusBrakeConfig& config);
   hal::Result<> do_move(double fraction, hal::Instant now) override;
+  hal::Result<> do_jump(double fraction, hal::Instant now) override;
+  void do_forget() override;
   [[nodiscard]] double do_commanded() const override { return place_; }
   [[nodiscard]] std::optional<double> do_measured() const override { return measured_; }
   [[nodiscard]] std::string_view do_name() const override { return name_; }
+  hal::Result<> tell(double place, hal::Instant now);
   hal::Result<> send(double place);
   hal::Result<> measure(hal::Instant now);
 
@@ -48,6 +53,7 @@ class ModbusBrake final : public BrakeActuator {
   std::optional<double> measured_;
   std::optional<hal::Instant> last_;
   std::optional<hal::Instant> next_poll_;
+  std::optional<hal::Instant> refresh_at_;
   bool enabled_ = false;
 };
 

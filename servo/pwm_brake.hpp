@@ -32,6 +32,8 @@ class PwmBrake final : public BrakeActuator {
  private:
   explicit PwmBrake(Servo servo) : servo_(std::move(servo)) {}
   hal::Result<> do_move(double fraction, hal::Instant now) override { return servo_.move(fraction, now); }
+  hal::Result<> do_jump(double fraction, hal::Instant now) override { return servo_.jump(fraction, now); }
+  void do_forget() override { servo_.forget(); }
   [[nodiscard]] double do_commanded() const override { return servo_.place(); }
   [[nodiscard]] std::string_view do_name() const override { return servo_.channel().name(); }
 
