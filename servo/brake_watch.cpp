@@ -52,7 +52,7 @@ BrakeFaultKind BrakeWatch::suspicion(const std::optional<VehicleMotion>& motion,
   if (now - changed_ < config_.settle) return BrakeFaultKind::none;
   if (measured_ && !(std::abs(*measured_ - commanded_) <= config_.measured_tolerance))
     return BrakeFaultKind::mismatch;
-  if (!motion || now - motion->at > config_.motion_max_age) return BrakeFaultKind::none;
+  if (!motion || motion->at > now || now - motion->at > config_.motion_max_age) return BrakeFaultKind::none;
   const double left_m_s = motion->forward_m_s - motion->yaw_rate_rad_s * config_.half_track_m;
   const double right_m_s = motion->forward_m_s + motion->yaw_rate_rad_s * config_.half_track_m;
   if (!std::isfinite(left_m_s) || !std::isfinite(right_m_s)) return BrakeFaultKind::none;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kSource = "brakes";
 
 bool fresh(const std::optional<VehicleMotion>& motion, hal::Duration max_age, hal::Instant now) {
-  return motion && now - motion->at <= max_age && std::isfinite(motion->forward_m_s) &&
+  return motion && motion->at <= now && now - motion->at <= max_age && std::isfinite(motion->forward_m_s) &&
          std::isfinite(motion->yaw_rate_rad_s);
 }
 
@@ -68,8 +68,8 @@ void BrakePair::observe(const VehicleMotion& motion) { motion_ = motion; }
 void BrakePair::update(hal::Instant now) {
   now_ = now;
   decide(now);
-  move(left_, now);
-  move(right_, now);
+  move(left_, Pace::slewed, now);
+  move(right_, Pace::slewed, now);
   if (status_.state == BrakeState::engaged || status_.state == BrakeState::following) {
     watch(left_, right_, now);
     watch(right_, left_, now);
@@ -78,8 +78,8 @@ void BrakePair::update(hal::Instant now) {
   if (found && (status_.state == BrakeState::engaged || status_.state == BrakeState::following)) {
     begin_fault(now);
     decide(now);
-    move(left_, now);  // in this update, not in the next one
-    move(right_, now);
+    move(left_, Pace::at_once, now);  // in this update: the time for a slewed step is used up
+    move(right_, Pace::at_once, now);
   }
   warm(left_, "left", now);
   warm(right_, "right", now);
@@ -145,8 +145,13 @@ bool BrakePair::may_press(bool left, bool motion_known, hal::Instant now) const 
   return towards_rad_s <= config_.yaw_limit_rad_s;
 }
 
-void BrakePair::move(Side& side, hal::Instant now) {
-  const hal::Result<> moved = side.actuator->move(side.wanted, now);
+void BrakePair::move(Side& side, Pace pace, hal::Instant now) {
+  if (*side.fault && now >= side.tell_again_at) {
+    side.actuator->forget();
+    side.tell_again_at = now + config_.tell_again;
+  }
+  const hal::Result<> moved =
+      pace == Pace::at_once ? side.actuator->jump(side.wanted, now) : side.actuator->move(side.wanted, now);
   side.watch.saw(side.actuator->commanded(), side.actuator->measured(), now);
   *side.fraction = side.actuator->commanded();
   if (moved || *side.fault) return;
@@ -187,8 +192,10 @@ hal::Result<> BrakePair::clear_fault(hal::Instant now) {
                      fmt::format("they are {}, not faulted", to_string(status_.state)));
   status_.left = {};
   status_.right = {};
-  left_.watch.reset(now);
-  right_.watch.reset(now);
+  for (Side* const side : {&left_, &right_}) {
+    side->watch.reset(now);
+    side->actuator->forget();
+  }
   enter(BrakeState::engaged, "the fault was cleared", now);
   return {};
 }

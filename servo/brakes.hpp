@@ -33,6 +33,8 @@ struct BrakePairConfig {
   // After this long on one brake, or at standstill, it stays locked. Twice the 2 s that both brakes take.
   hal::Duration stop_time = std::chrono::seconds(4);
   double standstill_m_s = 0.02;
+  // A brake that was found bad is told to lock again this often; what fails altogether, at every update.
+  hal::Duration tell_again = std::chrono::milliseconds(100);
 };
 
 // What the pair reports besides its state; strings are for people.
@@ -92,12 +94,16 @@ class BrakePair final : public hal::Halt {
   [[nodiscard]] BrakeState state() const { return status_.state; }
   [[nodiscard]] const BrakeStatus& status() const { return status_; }
   [[nodiscard]] bool thrust_allowed() const { return !status_.cut_thrust; }
+  // Stops with one brake, and does not stand yet: it goes by what it is told of the vehicle's motion.
+  [[nodiscard]] bool stopping() const {
+    return status_.state == BrakeState::faulted && !stopped_ && !(status_.left && status_.right);
+  }
 
   void halt() noexcept override;
   // Out of halted. Needs a fresh command to move again.
   void resume(hal::Instant now);
   // Out of faulted, after somebody has looked. Errors: invalid_state (not faulted). A brake that is still bad
-  // is found again at the next updates.
+  // is found again at the next updates. Both actuators are told anew, whatever they were told before.
   [[nodiscard]] hal::Result<> clear_fault(hal::Instant now);
 
  private:
@@ -110,7 +116,9 @@ class BrakePair final : public hal::Halt {
     BrakeHeat* told_heat;
     double* fraction;
     double wanted = 1.0;
+    hal::Instant tell_again_at{};
   };
+  enum class Pace : std::uint8_t { slewed, at_once };
 
   void enter(BrakeState state, std::string_view reason, hal::Instant now);
   void begin_fault(hal::Instant now);
@@ -118,7 +126,7 @@ class BrakePair final : public hal::Halt {
   void decide_faulted(hal::Instant now);
   [[nodiscard]] bool standing() const;
   [[nodiscard]] bool may_press(bool left, bool motion_known, hal::Instant now) const;
-  void move(Side& side, hal::Instant now);
+  void move(Side& side, Pace pace, hal::Instant now);
   void watch(Side& side, const Side& other, hal::Instant now);
   void warm(Side& side, std::string_view name, hal::Instant now);
 
