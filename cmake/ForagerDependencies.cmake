@@ -1,6 +1,7 @@
 # Always needed (all packaged in Debian 12): expected, fmt, pugixml, toml++, CLI11, nlohmann-json.
 # Optional, per feature: libcurl (real reader over HTTP), SQLite (durable inventory), libcrypto (MAVLink signing),
-# Highway (vector loops of the simulated air), libgpiod 1 or 2 (GPIO lines), libmodbus (actuators).
+# Highway (vector loops of the simulated air), libgpiod 1 or 2 (GPIO lines), libmodbus (actuators),
+# libusb (serial adapters without a driver of the kernel), hidapi (the MCP2221A bridge, keyboard-like readers).
 find_package(tl-expected CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(pugixml CONFIG REQUIRED)
@@ -35,3 +36,5 @@ forager_feature(NANOFLANN nanoflann)
 forager_feature(HIGHWAY libhwy)
 forager_feature(GPIOD libgpiod)
 forager_feature(MODBUS libmodbus)
+forager_feature(LIBUSB libusb-1.0)
+forager_feature(HIDAPI hidapi-hidraw)

@@ -35,6 +35,8 @@ set(vendor_PkgConfig::CRYPTO "pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET 
 set(vendor_PkgConfig::HIGHWAY "pkg_check_modules(HIGHWAY REQUIRED IMPORTED_TARGET libhwy)" libhwy)
 set(vendor_PkgConfig::GPIOD "pkg_check_modules(GPIOD REQUIRED IMPORTED_TARGET libgpiod)" libgpiod)
 set(vendor_PkgConfig::MODBUS "pkg_check_modules(MODBUS REQUIRED IMPORTED_TARGET libmodbus)" libmodbus)
+set(vendor_PkgConfig::LIBUSB "pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)" libusb-1.0)
+set(vendor_PkgConfig::HIDAPI "pkg_check_modules(HIDAPI REQUIRED IMPORTED_TARGET hidapi-hidraw)" hidapi-hidraw)
 
 set(vendors "")
 set(archives "")

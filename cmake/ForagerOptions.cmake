@@ -8,7 +8,7 @@ option(FORAGER_WERROR "Treat warnings as errors" OFF)
 option(FORAGER_FUZZ "Build the libFuzzer targets (clang only)" OFF)
 set(FORAGER_SANITIZE "" CACHE STRING "Sanitizers to build with, for example address,undefined")
 
-foreach(feature IN ITEMS CURL SQLITE CRYPTO NANOFLANN HIGHWAY GPIOD MODBUS)
+foreach(feature IN ITEMS CURL SQLITE CRYPTO NANOFLANN HIGHWAY GPIOD MODBUS LIBUSB HIDAPI)
   set(FORAGER_WITH_${feature} AUTO CACHE STRING "Use ${feature}: AUTO, ON or OFF")
   set_property(CACHE FORAGER_WITH_${feature} PROPERTY STRINGS AUTO ON OFF)
 endforeach()
