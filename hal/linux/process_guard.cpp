@@ -21,10 +21,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr char kReady = 'r';
 constexpr char kArm = 'a';
 constexpr char kBye = 'b';
-constexpr Duration kDying = 200ms;  // for a killed process to let go of what it holds
-constexpr int kPriority = 60;       // above the threads that make pulses
+constexpr Duration kDying = 200ms;   // for a killed process to let go of what it holds
+constexpr Duration kSettling = 10s;  // of a guard on a machine that is out of breath
+constexpr int kPriority = 60;        // above the threads that make pulses
 
 Duration monotonic() {
   timespec now{};
@@ -95,6 +97,7 @@ void settle_in() {
 
 [[noreturn]] void be_the_guard(int link, pid_t watched, Duration timeout, const ProcessGuard::Act& act) {
   settle_in();
+  static_cast<void>(::send(link, &kReady, 1, MSG_NOSIGNAL));
   try {
     if (const auto cause = Watch(link, watched, timeout).run()) act(*cause);
   } catch (const std::exception&) {
@@ -121,7 +124,13 @@ Result<std::unique_ptr<ProcessGuard>> ProcessGuard::start(Duration timeout, Act 
     ours.reset();
     be_the_guard(its.get(), self, timeout, act);
   }
-  return std::unique_ptr<ProcessGuard>(new ProcessGuard(std::move(ours), child));
+  its.reset();
+  // Until it has settled in, a signal to the whole group could end it.
+  std::unique_ptr<ProcessGuard> guard(new ProcessGuard(std::move(ours), child));
+  char word = 0;
+  if (!readable(guard->link_.get(), kSettling) || ::recv(guard->link_.get(), &word, 1, 0) != 1)
+    return fail(ErrorCode::io, kDevice, "start", "it did not come up");
+  return guard;
 }
 
 ProcessGuard::~ProcessGuard() { stand_down(); }

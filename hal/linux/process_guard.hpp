@@ -36,8 +36,9 @@ class ProcessGuard {
   // Runs in the guard. It may open whatever it needs: nothing but stdin, stdout and stderr is shared.
   using Act = std::function<void(GuardCause cause)>;
 
-  // Forks. To be called before threads are started and devices are opened. `timeout`: silence for longer than
-  // this, once armed, is a hang. Errors: invalid_argument (timeout not positive), io (no more processes).
+  // Forks, and waits until the guard watches. To be called before threads are started and devices are opened.
+  // `timeout`: silence for longer than this, once armed, is a hang. Errors: invalid_argument (timeout not
+  // positive), io (no more processes, or it did not come up).
   [[nodiscard]] static Result<std::unique_ptr<ProcessGuard>> start(Duration timeout, Act act);
   ~ProcessGuard();  // stands down
   ProcessGuard(const ProcessGuard&) = delete;
