@@ -20,6 +20,7 @@ Endpoint read_endpoint(ConfigReader& table, std::string_view key, const Endpoint
 }
 
 void read_reader(ConfigReader table, Board& board) {
+  board.reader_named = table.present();
   board.reader_host = table.text("host", board.reader_host);
   board.reader_rest_port =
       static_cast<std::uint16_t>(table.integer("rest_port", board.reader_rest_port, kPort));
@@ -31,6 +32,19 @@ void read_reader(ConfigReader table, Board& board) {
   if (board.reader_user.empty() != board.reader_password_env.empty())
     table.complain("user", "and password_env go together",
                    "Give both, or neither for a reader without login.");
+}
+
+void read_autopilot(ConfigReader table, Board& board) {
+  board.autopilot = read_endpoint(table, "address", board.autopilot);
+  board.autopilot_serial = table.text("serial", "");
+  board.autopilot_line.baud =
+      static_cast<std::uint32_t>(table.integer("baud", board.autopilot_line.baud, {1200, 12e6}));
+  if (table.choice("flow", "none", {"none", "hardware"}) == "hardware")
+    board.autopilot_line.flow = hal::FlowControl::hardware;
+  if (table.has("serial") && table.has("address"))
+    table.complain("serial", "and address exclude each other", "Give the one the autopilot is on.");
+  if (!table.has("serial") && (table.has("baud") || table.has("flow")))
+    table.complain("baud", "and flow belong to a serial port", "Name it: serial = \"/dev/ttyACM0\".");
 }
 
 }  // namespace
@@ -66,12 +80,12 @@ hal::Result<Board> load_board(const std::string& name_or_path) {
       about.choice("kind", "socket", {"sim", "socket"}) == "sim" ? BoardKind::sim : BoardKind::socket;
   board.guard_timeout = about.duration("guard_timeout_ms", board.guard_timeout, {20, 10000});
   read_reader(top.table("reader"), board);
-  ConfigReader autopilot = top.table("autopilot");
-  board.autopilot = read_endpoint(autopilot, "address", board.autopilot);
+  read_autopilot(top.table("autopilot"), board);
   ConfigReader world = top.table("world");
   board.truth = read_endpoint(world, "truth", board.truth);
   board.brakes = read_brake_board(top.table("brakes"));
   board.esc = read_esc_board(top.table("esc"));
+  board.modbus = read_modbus_board(top);
   board.bench = read_bench_board(top);
   add_brake_servos(board.bench, board.brakes);
   check_unused(*root, issue);

@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "boards/bench_board.hpp"
 #include "boards/brake_board.hpp"
 #include "boards/config_node.hpp"
 #include "boards/esc_board.hpp"
+#include "boards/modbus_board.hpp"
 #include "hal/error.hpp"
+#include "hal/serial.hpp"
 #include "hal/time.hpp"
 
 namespace forager::boards {
@@ -34,6 +37,7 @@ struct Board {
   std::string name = "sim";
   BoardKind kind = BoardKind::sim;
 
+  bool reader_named = false;  // the file has the table [reader]
   std::string reader_host = "127.0.0.1";
   std::uint16_t reader_rest_port = 3161;
   std::uint16_t reader_stream_port = 3177;
@@ -42,13 +46,16 @@ struct Board {
   std::string reader_password_env;  // environment variable that holds the password
 
   Endpoint autopilot{"127.0.0.1", 14550};
+  std::string autopilot_serial;  // a port, instead of the address; empty: UDP
+  hal::SerialSettings autopilot_line{.baud = 57600};
   Endpoint truth{"127.0.0.1", 14571};  // where the emulated autopilot's truth feed is received
 
   // A program that moves outputs and is silent for longer than this is taken for hung (boards/output_guard).
   hal::Duration guard_timeout = std::chrono::milliseconds(60);
 
   BrakeBoard brakes;
-  EscBoard esc;      // lines of the bench; a mission never uses them
+  EscBoard esc;  // lines of the bench; a mission never uses them
+  std::vector<ModbusLine> modbus;
   BenchBoard bench;  // single devices by name; a mission never uses them either
 };
 

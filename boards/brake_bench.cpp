@@ -3,9 +3,9 @@
 #include <optional>
 #include <utility>
 
+#include "boards/autopilot_line.hpp"
 #include "boards/brake_devices.hpp"
 #include "flight/mavlink_autopilot.hpp"
-#include "hal/linux/udp_peer.hpp"
 
 namespace forager::boards {
 namespace {
@@ -20,7 +20,7 @@ class Bench final : public BrakeBench {
 
   hal::Result<> open(const Board& board, hal::Clock& clock) {
     if (wants_autopilot(board_)) {
-      stream_ = hal::open_udp_peer(board.autopilot.host, board.autopilot.port);
+      stream_ = open_autopilot_line(board);
       auto motors = bay_.claim("forager brake");  // nobody else may spin them while brakes are tried
       if (!motors) return hal::fail(std::move(motors).error());
       auto link = flight::MavlinkAutopilot::create(*stream_, *journal_, {}, clock.now(), *std::move(motors));

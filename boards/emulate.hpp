@@ -34,6 +34,7 @@ class EmulatedServer {
 
 struct EmulatedAutopilotOptions {
   Endpoint listen{"127.0.0.1", 14550};  // MAVLink over UDP; learns its peer from the first datagram
+  std::string serial;                   // not empty: a serial port of this name instead, made for it
   std::vector<Endpoint> truth;          // who is told where the vehicle really is
   std::uint64_t seed = 1;
   std::string refuse_arming;  // not empty: arming fails with this text

@@ -5,6 +5,7 @@
 
 #include "boards/emulate.hpp"
 #include "boards/world_builder.hpp"
+#include "hal/linux/pseudo_terminal.hpp"
 #include "hal/linux/udp_peer.hpp"
 #include "hal/units.hpp"
 #include "mocks/sim_autopilot.hpp"
@@ -19,11 +20,11 @@ constexpr hal::Duration kLongestStep = std::chrono::milliseconds(200);
 class AutopilotServer final : public EmulatedServer {
  public:
   AutopilotServer(const Scene& scene, const EmulatedAutopilotOptions& options,
-                  std::unique_ptr<hal::UdpPeer> line, hal::Journal& journal)
+                  std::unique_ptr<hal::ByteStream> line, std::uint16_t port, hal::Journal& journal)
       : options_(options),
         world_(build_world(scene, options.seed)),
         line_(std::move(line)),
-        port_(line_->local_port()),
+        port_(port),
         autopilot_(*line_, autopilot_config(scene, options.seed)) {
     autopilot_.attach(&world_, &journal);
     autopilot_.set_battery_fraction(scene.vehicle.battery_start);
@@ -41,10 +42,12 @@ class AutopilotServer final : public EmulatedServer {
   }
 
   std::vector<NamedEndpoint> endpoints() const override {
+    if (!options_.serial.empty()) return {};
     return {{"mavlink", {options_.listen.host, port_}}};
   }
 
   std::string address() const override {
+    if (!options_.serial.empty()) return "MAVLink 2 on the serial port " + options_.serial;
     return fmt::format("MAVLink 2 on udp {}:{}", options_.listen.host, port_);
   }
 
@@ -69,7 +72,7 @@ class AutopilotServer final : public EmulatedServer {
   std::optional<hal::Instant> last_;
   hal::Duration stalled_{};
   mocks::World world_;
-  std::unique_ptr<hal::UdpPeer> line_;
+  std::unique_ptr<hal::ByteStream> line_;
   std::uint16_t port_;
   mocks::SimAutopilot autopilot_;
   std::vector<std::unique_ptr<hal::UdpPeer>> listeners_;
@@ -81,9 +84,15 @@ class AutopilotServer final : public EmulatedServer {
 hal::Result<std::unique_ptr<EmulatedServer>> emulate_autopilot(const Scene& scene,
                                                                const EmulatedAutopilotOptions& options,
                                                                hal::Journal& journal) {
+  if (!options.serial.empty()) {
+    auto terminal = hal::open_pseudo_terminal(options.serial);
+    if (!terminal) return hal::fail(std::move(terminal).error());
+    return std::make_unique<AutopilotServer>(scene, options, *std::move(terminal), 0, journal);
+  }
   auto line = hal::open_udp_listener(options.listen.host, options.listen.port);
   FORAGER_TRY(line->open());
-  return std::make_unique<AutopilotServer>(scene, options, std::move(line), journal);
+  const std::uint16_t port = line->local_port();
+  return std::make_unique<AutopilotServer>(scene, options, std::move(line), port, journal);
 }
 
 }  // namespace forager::boards

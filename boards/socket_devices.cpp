@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "boards/autopilot_line.hpp"
 #include "boards/device_set.hpp"
 #include "boards/reader_bench.hpp"
 #include "boards/world_builder.hpp"
@@ -40,7 +41,7 @@ class SocketDevices final : public DeviceSet {
         facts_(facts_of(world_)),
         rest_(hal::make_curl_http_client(reader_url(board), std::move(credentials))),
         events_(hal::open_tcp_stream(board.reader_host, board.reader_stream_port)),
-        autopilot_(hal::open_udp_peer(board.autopilot.host, board.autopilot.port)),
+        autopilot_(open_autopilot_line(board)),
         truth_(hal::open_udp_listener(board.truth.host, board.truth.port)),
         body_(*truth_, start_of(scene)),
         depth_(world_, body_, depth_options(scene), seed_for(options.seed, SeedStream::camera)),
@@ -65,7 +66,7 @@ class SocketDevices final : public DeviceSet {
   WorldFacts facts_;
   std::unique_ptr<hal::HttpClient> rest_;
   std::unique_ptr<hal::ByteStream> events_;
-  std::unique_ptr<hal::UdpPeer> autopilot_;
+  std::unique_ptr<hal::ByteStream> autopilot_;
   std::unique_ptr<hal::UdpPeer> truth_;
   mocks::TruthFollower body_;
   mocks::SimDepthCamera depth_;

@@ -121,6 +121,9 @@ void add_autopilot(CLI::App& emulate, int& exit_code) {
   add_shared(sub, command);
   sub->add_option("--listen", command->listen, "HOST:PORT of MAVLink over UDP; port 0: any")
       ->capture_default_str();
+  sub->add_option("--serial", command->serial,
+                  "Make a serial port of this name and be at its other end instead")
+      ->excludes("--listen");
   sub->add_option("--truth", command->truth,
                   "HOST:PORT that is told where the vehicle is; repeat it for several")
       ->allow_extra_args(false)
@@ -153,6 +156,7 @@ int run_emulate_autopilot_command(const EmulateAutopilotCommand& command) {
   if (!listen) return complain(listen.error());
   boards::EmulatedAutopilotOptions options;
   options.listen = *std::move(listen);
+  options.serial = command.serial;
   options.seed = command.seed;
   options.refuse_arming = command.refuse_arming;
   for (const std::string& text : command.truth) {

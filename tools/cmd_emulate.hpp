@@ -31,6 +31,7 @@ struct EmulateReaderCommand : EmulateCommand {
 
 struct EmulateAutopilotCommand : EmulateCommand {
   std::string listen = "127.0.0.1:14550";
+  std::string serial;  // not empty: a serial port of this name instead
   std::vector<std::string> truth{"127.0.0.1:14571", "127.0.0.1:14572"};  // who is told the truth
   std::string refuse_arming;
 };
