@@ -12,31 +12,12 @@
 #include <vector>
 
 #include "hal/byte_stream.hpp"
+#include "tests/hal/byte_stream_rig.hpp"
 #include "tests/hal/eventually.hpp"
 
 // The contract of hal::ByteStream as tests, for every implementation alike. Include it in one file of a test
 // program and instantiate ByteStreamContract with rigs.
 namespace forager::hal::contract {
-
-// A stream under test with somebody at its other end.
-class StreamRig {
- public:
-  virtual ~StreamRig() = default;
-  virtual ByteStream& stream() = 0;
-  // The other end, once the stream is open. Stays the same until close_peer() or a new connection.
-  virtual ByteStream& peer() = 0;
-  // Lets a connect under way come through; called again and again until the stream is open.
-  virtual void serve() {}
-  // The other end hangs up; it can be called again.
-  virtual void close_peer() = 0;
-  // From now on nobody listens, or somebody does again. Only for streams that connect.
-  virtual void refuse_connects(bool refuse) = 0;
-};
-
-struct RigMaker {
-  std::string name;
-  std::function<std::unique_ptr<StreamRig>()> make;
-};
 
 inline std::string rig_name(const testing::TestParamInfo<RigMaker>& rig) { return rig.param.name; }
 

@@ -2,6 +2,7 @@
 
 #include "mocks/faulty_stream.hpp"
 #include "mocks/memory_stream.hpp"
+#include "tests/hal/usb_serial_rigs.hpp"
 
 namespace forager::hal::contract {
 namespace {
@@ -40,6 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Doubles, ByteStreamContract,
                          testing::Values(kMemoryBytes, kMemoryDatagrams, kFaultless), rig_name);
 INSTANTIATE_TEST_SUITE_P(Doubles, OrderedContract, testing::Values(kMemoryBytes, kFaultless), rig_name);
 INSTANTIATE_TEST_SUITE_P(Doubles, ConnectionContract, testing::Values(kMemoryBytes, kFaultless), rig_name);
+INSTANTIATE_TEST_SUITE_P(UsbSerial, ByteStreamContract, testing::Values(kCdcAcm, kFtdi), rig_name);
+INSTANTIATE_TEST_SUITE_P(UsbSerial, OrderedContract, testing::Values(kCdcAcm, kFtdi), rig_name);
 INSTANTIATE_TEST_SUITE_P(Doubles, DatagramContract, testing::Values(kMemoryDatagrams), rig_name);
 
 }  // namespace
