@@ -1,67 +1,38 @@
+// What the pair does while its brakes do what they are told.
 #include "servo/brakes.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
-#include "mocks/fake_digital_out.hpp"
 #include "mocks/fake_pwm.hpp"
-#include "mocks/text_journal.hpp"
-#include "servo/digital_brake.hpp"
 #include "servo/pwm_brake.hpp"
+#include "tests/reader/allocation_count.hpp"
+#include "tests/servo/brakes_rig.hpp"
 
 namespace forager::servo {
 namespace {
 
-using namespace std::chrono_literals;
-using testing::HasSubstr;
-
-// A brake that obeys at once and whose sensor a test can hold.
-class MeasuredBrake final : public BrakeActuator {
+// An output that keeps its pulse and nothing else.
+class PlainChannel final : public hal::PwmChannel {
  public:
-  std::optional<double> stuck_at;
-  void halt() noexcept override { told_ = 1.0; }
+  std::uint32_t sets = 0;
 
  private:
-  hal::Result<> do_move(double fraction, hal::Instant) override {
-    told_ = fraction;
+  hal::Result<> do_set_pulse(hal::Duration length) override {
+    pulse_ = length;
+    ++sets;
     return {};
   }
-  [[nodiscard]] double do_commanded() const override { return told_; }
-  [[nodiscard]] std::optional<double> do_measured() const override { return stuck_at.value_or(told_); }
-  [[nodiscard]] std::string_view do_name() const override { return "measured brake"; }
-  double told_ = 0.0;
-};
-
-class Brakes : public testing::Test {
- protected:
-  Brakes() { brakes_.emplace(left_, right_, journal_, BrakePairConfig{}, now_); }
-
-  // Lets time pass in steps of a control loop; the vehicle does what `motion` says.
-  void run(hal::Duration time, std::optional<VehicleMotion> motion = std::nullopt) {
-    for (const hal::Instant end = now_ + time; now_ < end;) {
-      now_ += 20ms;
-      group_.tick(now_);
-      if (motion) brakes_->observe({motion->forward_m_s, motion->yaw_rate_rad_s, now_});
-      brakes_->update(now_);
-    }
+  hal::Result<> do_release() override {
+    pulse_.reset();
+    return {};
   }
-  void command(double left, double right, hal::Duration lasting = 10s) {
-    brakes_->command({left, right, now_ + lasting});
-  }
-  [[nodiscard]] bool left_locked() { return group_.channel(0).pulse() == hal::Duration(1725us); }
-  [[nodiscard]] bool right_locked() { return group_.channel(1).pulse() == hal::Duration(1875us); }
-  [[nodiscard]] bool left_open() { return group_.channel(0).pulse() == hal::Duration(1180us); }
-  [[nodiscard]] bool right_open() { return group_.channel(1).pulse() == hal::Duration(1180us); }
-
-  hal::Instant now_{1s};
-  mocks::TextJournal journal_;
-  mocks::FakePwmGroup group_{"timer", 2};
-  PwmBrake left_ = PwmBrake::create(group_.channel(0), laboratory_left()).value();
-  PwmBrake right_ = PwmBrake::create(group_.channel(1), laboratory_right()).value();
-  std::optional<BrakePair> brakes_;
+  [[nodiscard]] std::optional<hal::Duration> do_pulse() const override { return pulse_; }
+  [[nodiscard]] std::string_view do_name() const override { return "plain"; }
+  std::optional<hal::Duration> pulse_;
 };
 
 TEST_F(Brakes, AreLockedFromConstructionOnAndAllowNoThrust) {
@@ -124,131 +95,6 @@ TEST_F(Brakes, TheEndOfTheObjectLocksThem) {
   EXPECT_TRUE(left_locked() && right_locked());
 }
 
-TEST_F(Brakes, AnOutputThatFailsStopsWithTheOtherBrakeInTheSameUpdate) {
-  command(0.0, 0.0);
-  run(500ms, VehicleMotion{0.8, 0.0, {}});
-  group_.channel(0).disconnect();
-  command(1.0, 0.0);
-  run(20ms, VehicleMotion{0.8, 0.0, {}});
-  EXPECT_EQ(BrakeState::faulted, brakes_->state());
-  EXPECT_TRUE(brakes_->status().cut_thrust);
-  EXPECT_EQ(BrakeFaultKind::output, brakes_->status().left.kind);
-  EXPECT_FALSE(brakes_->status().right);
-  run(100ms, VehicleMotion{0.8, -0.1, {}});
-  EXPECT_TRUE(right_locked());
-  EXPECT_EQ(1U, journal_.count("faulted: left brake, output: "));
-}
-
-// The vehicle pivots about the one wheel that holds: the yaw towards it must not grow into a spin.
-TEST_F(Brakes, OneBrakeAloneIsLetGoWhileTheVehicleYawsTooFastTowardsIt) {
-  command(0.0, 0.0);
-  run(500ms);
-  group_.channel(0).disconnect();
-  command(0.5, 0.0);
-  run(200ms, VehicleMotion{0.8, -0.1, {}});
-  EXPECT_TRUE(right_locked());
-  run(200ms, VehicleMotion{0.7, -0.5, {}});
-  EXPECT_TRUE(right_open());
-  run(200ms, VehicleMotion{0.6, -0.2, {}});
-  EXPECT_TRUE(right_locked());
-  run(200ms, VehicleMotion{0.5, +0.9, {}});  // it turns about the other one, which is stuck locked
-  EXPECT_TRUE(right_locked());
-  run(200ms, VehicleMotion{0.0, -0.01, {}});
-  run(200ms, VehicleMotion{0.0, -0.9, {}});  // once it has stood, it stays locked
-  EXPECT_TRUE(right_locked());
-}
-
-TEST_F(Brakes, WithoutAPoseOneBrakeIsPressedInPulsesAndThenForGood) {
-  command(0.0, 0.0);
-  run(500ms);
-  group_.channel(1).disconnect();
-  command(0.0, 0.5);
-  int locked = 0;
-  int open = 0;
-  for (int i = 0; i < 120; ++i) {
-    run(20ms);
-    locked += left_locked() ? 1 : 0;
-    open += left_open() ? 1 : 0;
-  }
-  EXPECT_GT(locked, 0);
-  EXPECT_GT(open, locked);
-  run(3s);
-  EXPECT_TRUE(left_locked());
-  run(1s);
-  EXPECT_TRUE(left_locked());
-}
-
-TEST_F(Brakes, WithBothBrakesFailedBothAreToldToLockAgainAndAgain) {
-  command(0.0, 0.0);
-  run(500ms);
-  group_.channel(0).disconnect();
-  group_.channel(1).disconnect();
-  command(1.0, 1.0);
-  run(500ms);
-  EXPECT_EQ(BrakeState::faulted, brakes_->state());
-  EXPECT_THAT(brakes_->status().reason, HasSubstr("no brake is left"));
-  group_.channel(0).disconnect(false);
-  group_.channel(1).disconnect(false);
-  run(300ms);
-  EXPECT_TRUE(left_locked() && right_locked());
-}
-
-TEST_F(Brakes, AFaultStaysUntilSomebodyClearsIt) {
-  EXPECT_EQ(hal::ErrorCode::invalid_state, brakes_->clear_fault(now_).error().code);
-  command(0.0, 0.0);
-  run(500ms);
-  group_.channel(0).fail_next({hal::ErrorCode::no_ack, "chip", "write", "no answer", ""});
-  command(1.0, 1.0);
-  run(5s);
-  EXPECT_EQ(BrakeState::faulted, brakes_->state());
-  command(0.0, 0.0);
-  run(500ms);
-  EXPECT_EQ(BrakeState::faulted, brakes_->state());
-  ASSERT_TRUE(brakes_->clear_fault(now_));
-  run(500ms);
-  EXPECT_TRUE(left_locked() && right_locked());
-  command(0.0, 0.0);
-  run(500ms);
-  EXPECT_TRUE(left_open() && right_open());
-}
-
-TEST_F(Brakes, ALockedWheelThatMovesIsSlipOnItsSide) {
-  command(1.0, 0.0);
-  // Pivoting about the left wheel: v = w r. That is how it should be.
-  run(2s, VehicleMotion{0.25, 0.5, {}});
-  EXPECT_EQ(BrakeState::following, brakes_->state());
-  command(1.0, 0.0);
-  run(400ms, VehicleMotion{0.25, 0.0, {}});  // going straight on: the left wheel rolls
-  EXPECT_EQ(BrakeFaultKind::slip, brakes_->status().left.kind);
-  EXPECT_FALSE(brakes_->status().right);
-}
-
-TEST_F(Brakes, StoppingFromSpeedIsNoSlip) {
-  command(0.0, 0.0);
-  run(1s, VehicleMotion{0.3, 0.0, {}});
-  command(1.0, 1.0);
-  run(300ms, VehicleMotion{0.2, 0.0, {}});
-  run(2s, VehicleMotion{0.02, 0.0, {}});
-  EXPECT_EQ(BrakeState::following, brakes_->state());
-}
-
-TEST_F(Brakes, AnOpenWheelThatStandsWhileTheOtherTurnsIsStuck) {
-  command(0.0, 0.0);
-  run(300ms, VehicleMotion{0.25, 0.0, {}});
-  run(2s, VehicleMotion{0.25, -0.5, {}});  // turns right about the right wheel, which is open
-  EXPECT_EQ(BrakeFaultKind::drag, brakes_->status().right.kind);
-  EXPECT_FALSE(brakes_->status().left);
-  EXPECT_TRUE(left_locked());  // both hold now: the one by itself, the other as told
-}
-
-TEST_F(Brakes, MotionThatIsOldOrNoNumberAccusesNobody) {
-  command(1.0, 0.0);
-  brakes_->observe({0.5, 0.0, now_});
-  run(2s);
-  run(1s, VehicleMotion{std::nan(""), 0.0, {}});
-  EXPECT_EQ(BrakeState::following, brakes_->state());
-}
-
 TEST_F(Brakes, HeatIsReportedAndNeverOpensABrake) {
   run(20min);
   EXPECT_TRUE(brakes_->status().left_heat.rest_advised);
@@ -268,50 +114,50 @@ TEST(BrakeHeat, FollowsTheFirstOrderLawWhateverTheStep) {
   EXPECT_NEAR(fine.state().rise_k, coarse.state().rise_k, 1e-6);
 }
 
-TEST(MeasuredBrakes, ABrakeThatMeasuresItselfElsewhereIsFound) {
-  mocks::TextJournal journal;
-  MeasuredBrake left;
-  MeasuredBrake right;
+// A journal that keeps nothing: what it would keep would be counted.
+TEST(BrakeAllocations, FollowingCommandsAllocatesNothing) {
+  hal::NullJournal journal;
+  mocks::FakePwmGroup group("timer", 2);
+  PwmBrake left = PwmBrake::create(group.channel(0), laboratory_left()).value();
+  PwmBrake right = PwmBrake::create(group.channel(1), laboratory_right()).value();
   hal::Instant now(1s);
-  BrakePair brakes(left, right, journal, {}, now);
-  const auto run = [&](hal::Duration time) {
-    for (const hal::Instant end = now + time; now < end; now += 20ms) brakes.update(now);
+  BrakePair brakes(left, right, journal, BrakePairConfig{}, now);
+  const auto step = [&] {
+    now += 10ms;
+    // Pulses are kept by the fake timer whenever they change: these do not.
+    brakes.command({1.0, 1.0, now + 100ms});
+    brakes.observe({0.0, 0.0, now});
+    brakes.update(now);
   };
-  brakes.command({0.0, 0.0, now + 60s});
-  run(1s);
-  EXPECT_EQ(BrakeState::following, brakes.state());
-  right.stuck_at = 0.0;
-  run(1s);
-  EXPECT_EQ(BrakeState::following, brakes.state());  // it is where it was told to be
-  brakes.command({1.0, 1.0, now + 60s});
-  run(300ms);
-  EXPECT_EQ(BrakeState::following, brakes.state());  // it is given time to move
-  run(400ms);
-  EXPECT_EQ(BrakeFaultKind::mismatch, brakes.status().right.kind);
-  EXPECT_THAT(brakes.status().reason, HasSubstr("told 1.00 and measures 0.00"));
+  for (int i = 0; i < 100; ++i) step();
+  ASSERT_EQ(BrakeState::following, brakes.state());
+  const std::uint64_t before = test::allocation_count();
+  for (int i = 0; i < 1000; ++i) step();
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
-TEST(DigitalBrake, IsLockedByLettingGoOfASpringAppliedOne) {
-  mocks::FakeDigitalOut line("gpio BRAKE_LEFT");
-  DigitalBrake brake(line, WhenActive::opens);
-  ASSERT_TRUE(brake.move(0.0, hal::Instant(1s)));
-  EXPECT_TRUE(line.active());
-  ASSERT_TRUE(brake.move(0.49, hal::Instant(1s)));
-  EXPECT_TRUE(line.active());
-  ASSERT_TRUE(brake.move(0.5, hal::Instant(1s)));
-  EXPECT_FALSE(line.active());
-  ASSERT_TRUE(brake.move(0.0, hal::Instant(1s)));
-  brake.halt();
-  EXPECT_FALSE(line.active());
-  EXPECT_EQ(hal::ErrorCode::invalid_argument, brake.move(std::nan(""), hal::Instant(1s)).error().code);
-}
-
-TEST(DigitalBrake, IsLockedByCurrentWhereTheBoardSaysSo) {
-  mocks::FakeDigitalOut line("gpio BRAKE_LEFT");
-  DigitalBrake brake(line, WhenActive::locks);
-  brake.halt();
-  EXPECT_TRUE(line.active());
-  EXPECT_DOUBLE_EQ(1.0, brake.commanded());
+// The same with pulses that move at every step, on outputs that keep no record.
+TEST(BrakeAllocations, MovingThemAllocatesNothing) {
+  hal::NullJournal journal;
+  PlainChannel left_channel;
+  PlainChannel right_channel;
+  PwmBrake left = PwmBrake::create(left_channel, laboratory_left()).value();
+  PwmBrake right = PwmBrake::create(right_channel, laboratory_right()).value();
+  hal::Instant now(1s);
+  BrakePair brakes(left, right, journal, BrakePairConfig{}, now);
+  const auto step = [&](int i) {
+    now += 10ms;
+    const double to = (i / 20) % 2 == 0 ? 0.0 : 1.0;
+    brakes.command({to, 1.0 - to, now + 100ms});
+    brakes.update(now);
+  };
+  for (int i = 0; i < 100; ++i) step(i);
+  ASSERT_EQ(BrakeState::following, brakes.state());
+  const std::uint64_t before = test::allocation_count();
+  const std::uint32_t moved = left_channel.sets + right_channel.sets;
+  for (int i = 0; i < 1000; ++i) step(i);
+  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_GT(left_channel.sets + right_channel.sets, moved + 500U);
 }
 
 }  // namespace
