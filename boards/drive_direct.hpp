@@ -39,6 +39,10 @@ class DirectAutopilot final : public flight::DriveAutopilot {
   void request_takeoff(double, hal::Instant) override { request_ = flight::RequestState::refused; }
   void request_land(hal::Instant) override { ask(Ask::disarm); }
   void request_disarm(hal::Instant) override { ask(Ask::disarm); }
+  void cancel_request() override {
+    asked_ = Ask::none;
+    request_ = flight::RequestState::none;
+  }
   [[nodiscard]] flight::RequestState request_state() const override { return request_; }
   [[nodiscard]] const std::string& request_detail() const override { return detail_; }
   void set_position(const flight::PositionSetpoint&) override { told_.reset(); }
@@ -54,6 +58,7 @@ class DirectAutopilot final : public flight::DriveAutopilot {
   [[nodiscard]] hal::Instant attitude_heard() const override { return heard_; }
   [[nodiscard]] bool stop_heard() const override { return stop_heard_; }
   void request_stop_motors(hal::Instant) override { ask(Ask::disarm); }
+  void send(hal::Instant) override {}  // nothing lies between: heard at the next run()
 
  private:
   enum class Ask : std::uint8_t { none, guided, arm, disarm };

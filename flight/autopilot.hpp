@@ -64,6 +64,8 @@ class Autopilot : public hal::Halt {
   virtual void request_takeoff(double height_m, hal::Instant now) = 0;
   virtual void request_land(hal::Instant now) = 0;
   virtual void request_disarm(hal::Instant now) = 0;
+  // Drops the request under way, as when a pilot took the vehicle: it is not repeated, its state is none.
+  virtual void cancel_request() = 0;
   // How the last request stands, and for refused why ("arming refused: PreArm: ...").
   [[nodiscard]] virtual RequestState request_state() const = 0;
   [[nodiscard]] virtual const std::string& request_detail() const = 0;

@@ -28,6 +28,8 @@ class DriveAutopilot : public Autopilot {
   [[nodiscard]] virtual hal::Instant attitude_heard() const = 0;
   // Disarms at once, whatever the autopilot's land detector believes. For a vehicle on its wheels only.
   virtual void request_stop_motors(hal::Instant now) = 0;
+  // Sends what was set or asked for since update(), if it is due: a cut of thrust does not wait for the next.
+  virtual void send(hal::Instant now) = 0;
   // Somebody told us over the link to stop at once (a disarm command addressed to this computer). Stays.
   [[nodiscard]] virtual bool stop_heard() const = 0;
 };

@@ -45,6 +45,8 @@ hal::Result<> check(const MavlinkConfig& config) {
   FORAGER_TRY(positive(config.link_timeout, "link_timeout"));
   FORAGER_TRY(positive(config.pose_timeout, "pose_timeout"));
   FORAGER_TRY(positive(config.setpoint_interval, "setpoint_interval"));
+  FORAGER_TRY(positive(config.attitude_interval, "attitude_interval"));
+  FORAGER_TRY(positive(config.vision_interval, "vision_interval"));
   FORAGER_TRY(positive(config.command_timeout, "command_timeout"));
   FORAGER_TRY(positive(config.pose_stream_interval, "pose_stream_interval"));
   FORAGER_TRY(positive(config.landed_stream_interval, "landed_stream_interval"));
@@ -111,6 +113,8 @@ void MavlinkAutopilot::update(hal::Instant now) {
   }
   if (attitude_.update(now)) journal_->note(now, kSource, "attitude setpoint ran out");
   if (setpoint_.update(now)) journal_->note(now, kSource, "setpoint ran out");
+  // Whoever has it now, or who had it meanwhile, may have flown it away.
+  if (!state().guided || !state().armed) rolls_at_z_m_.reset();
   request_.update(state(), telemetry_.last_warning(), now);
   send_heartbeat(now);
   send_requests(now);
@@ -118,6 +122,12 @@ void MavlinkAutopilot::update(hal::Instant now) {
   send_setpoint(now);
   send_attitude(now);
   note_outcome(now);
+}
+
+void MavlinkAutopilot::send(hal::Instant now) {
+  send_requests(now);
+  send_setpoint(now);
+  send_attitude(now);
 }
 
 void MavlinkAutopilot::hear(const mavlink::Frame& frame, hal::Instant now) {
@@ -228,6 +238,7 @@ void MavlinkAutopilot::request_takeoff(double height_m, hal::Instant now) {
     noted_ = RequestState::pending;
     return note_outcome(now);
   }
+  rolls_at_z_m_.reset();
   mavlink::CommandLong command;
   command.command = mavlink::command::kNavTakeoff;
   command.param7 = static_cast<float>(height_m);  // above home
@@ -268,7 +279,7 @@ void MavlinkAutopilot::send_vision(const hal::PoseSample& sample) {
 void MavlinkAutopilot::halt() noexcept {
   try {
     clear_setpoint();
-    if (rolls_) return stop_motors_at_once();
+    if (on_its_wheels()) return stop_motors_at_once();
     const bool pending = request_.state() == RequestState::pending;
     if (pending && request_.what() == kLanding) return;
     if (!state().guided && !(pending && request_.what() == kGuided)) return;

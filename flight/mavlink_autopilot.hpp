@@ -30,8 +30,9 @@ namespace forager::flight {
 // Silent before the first feed_deadman(), but for requests. When the deadman expires, heartbeats stop and the
 // setpoint is dropped; a request under way is still brought to its end, as it may be the one to land.
 //
-// halt() stops the motors of a vehicle that was driven by attitude, as it stands on its wheels. Otherwise it
-// asks to land, and only while the vehicle is under our command (GUIDED): a pilot who took it keeps it.
+// halt() stops the motors of a vehicle that we drive by attitude, as it stands on its wheels: GUIDED and
+// heard of, not told to take off since, and no higher than where that began. Otherwise it asks to land, and
+// only while the vehicle is under our command (GUIDED): a pilot who took it keeps it.
 //
 // Steady-state updates allocate nothing; a changing link, a new autopilot and refusals do.
 class MavlinkAutopilot final : public DriveAutopilot {
@@ -54,6 +55,10 @@ class MavlinkAutopilot final : public DriveAutopilot {
   void request_takeoff(double height_m, hal::Instant now) override;
   void request_land(hal::Instant now) override;
   void request_disarm(hal::Instant now) override;
+  void cancel_request() override {
+    request_.cancel();
+    noted_ = RequestState::none;
+  }
   [[nodiscard]] RequestState request_state() const override { return request_.state(); }
   [[nodiscard]] const std::string& request_detail() const override { return request_.detail(); }
 
@@ -71,6 +76,7 @@ class MavlinkAutopilot final : public DriveAutopilot {
   }
   [[nodiscard]] bool stop_heard() const override { return stop_heard_; }
   void request_stop_motors(hal::Instant now) override;
+  void send(hal::Instant now) override;
 
   // Not sent: what comes sooner than the vision interval after the one before, and what is not finite.
   void send_vision(const hal::PoseSample& sample) override;
@@ -96,6 +102,7 @@ class MavlinkAutopilot final : public DriveAutopilot {
   void send_setpoint(hal::Instant now);
   void send_attitude(hal::Instant now);
   void stop_motors_at_once();
+  [[nodiscard]] bool on_its_wheels() const;
   void begin(std::string_view what, const mavlink::CommandLong& command, hal::Instant now);
   void begin_mode(std::string_view what, std::uint32_t mode, hal::Instant now);
   void note_outcome(hal::Instant now);
@@ -110,7 +117,7 @@ class MavlinkAutopilot final : public DriveAutopilot {
   MavlinkSetpoint setpoint_;
   MavlinkAttitude attitude_;
   MavlinkServos servos_;
-  bool rolls_ = false;  // the newest setpoint was an attitude: it stands on its wheels
+  std::optional<double> rolls_at_z_m_;  // driven by attitude since it was there; cleared by what flies it
   bool stop_heard_ = false;
   std::optional<hal::Instant> yaw_rate_taken_;
   Deadman deadman_;

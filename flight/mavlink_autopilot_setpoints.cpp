@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::string_view kSource = "autopilot";
 constexpr int kCopies = 3;  // there may be no next update to repeat it
+constexpr double kRisen_m = 0.5;
 
 std::uint32_t boot_ms(hal::Instant now) { return static_cast<std::uint32_t>(hal::to_milliseconds(now)); }
 
@@ -32,13 +33,13 @@ void MavlinkAutopilot::send_setpoint(hal::Instant now) {
 
 void MavlinkAutopilot::set_position(const PositionSetpoint& setpoint) {
   attitude_.clear();
-  rolls_ = false;
+  rolls_at_z_m_.reset();
   if (!setpoint_.set(setpoint)) journal_->note(now_, kSource, "position setpoint is not finite: dropped");
 }
 
 void MavlinkAutopilot::set_velocity(const VelocitySetpoint& setpoint) {
   attitude_.clear();
-  rolls_ = false;
+  rolls_at_z_m_.reset();
   if (!setpoint_.set(setpoint)) journal_->note(now_, kSource, "velocity setpoint is not finite: dropped");
 }
 
@@ -70,7 +71,7 @@ void MavlinkAutopilot::send_attitude(hal::Instant now) {
 
 void MavlinkAutopilot::set_attitude(const AttitudeSetpoint& setpoint) {
   setpoint_.clear();
-  rolls_ = true;
+  if (!rolls_at_z_m_) rolls_at_z_m_ = state().pose_world.position.z;
   if (!attitude_.set(setpoint)) journal_->note(now_, kSource, "attitude setpoint is not finite: dropped");
 }
 
@@ -83,6 +84,13 @@ std::optional<double> MavlinkAutopilot::take_yaw_rate() {
 
 void MavlinkAutopilot::request_stop_motors(hal::Instant now) {
   begin("stopping the motors", stop_motors(), now);
+}
+
+// "In air" alone is no sign: a land detector takes a vehicle that pushes along the ground for one that flies.
+bool MavlinkAutopilot::on_its_wheels() const {
+  if (!rolls_at_z_m_ || !state().link_up || !state().guided) return false;
+  const bool higher = !state().pose_valid || state().pose_world.position.z - *rolls_at_z_m_ > kRisen_m;
+  return !(state().in_air && higher);
 }
 
 void MavlinkAutopilot::stop_motors_at_once() {

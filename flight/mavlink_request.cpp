@@ -47,6 +47,12 @@ void MavlinkRequest::begin(std::string_view what, const mavlink::CommandLong& co
   refusal_.reset();
 }
 
+void MavlinkRequest::cancel() {
+  state_ = RequestState::none;
+  detail_.clear();
+  refusal_.reset();
+}
+
 void MavlinkRequest::refuse(std::string_view what, std::string_view why) {
   what_ = what;
   finish_refused(why);

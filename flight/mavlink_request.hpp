@@ -13,7 +13,7 @@ namespace forager::flight {
 
 // One command at a time through the command protocol of MAVLink:
 //
-//   none/accepted/refused --begin--> pending --ack ACCEPTED--> accepted
+//   none/accepted/refused --begin--> pending --ack ACCEPTED--> accepted; any --cancel--> none
 //     pending: sent again with confirmation + 1 after each timeout; IN_PROGRESS lengthens the wait;
 //              TEMPORARILY_REJECTED waits for the next try
 //     pending --other ack, then its STATUSTEXT or a short wait--> refused
@@ -29,6 +29,9 @@ class MavlinkRequest {
   void begin(std::string_view what, const mavlink::CommandLong& command, hal::Instant now);
   // Refuses at once what makes no sense to send.
   void refuse(std::string_view what, std::string_view why);
+
+  // Forgets it: not sent any more, and an answer to it changes nothing.
+  void cancel();
 
   // The command to send now, or nullptr.
   [[nodiscard]] const mavlink::CommandLong* due(hal::Instant now);

@@ -20,7 +20,8 @@ class FakeAutopilot final : public Autopilot {
   bool refuse_guided = false;
   bool refuse_arm = false;
   bool refuse_takeoff = false;
-  bool frozen = false;  // takes setpoints but does not move
+  bool ignore_arm = false;  // the request stays under way
+  bool frozen = false;      // takes setpoints but does not move
   double max_speed_m_s = 1.0;
   double acceleration_m_s2 = 1.5;
   double yaw_rate_rad_s = 1.0;
@@ -31,6 +32,7 @@ class FakeAutopilot final : public Autopilot {
   std::vector<std::string> asked;
   std::uint32_t setpoints = 0;
   std::uint32_t visions = 0;
+  std::uint8_t vision_resets = 0;  // changes of the reset counter it was given
   std::uint32_t feeds = 0;
   std::optional<PositionSetpoint> goal;
 
@@ -63,6 +65,11 @@ class FakeAutopilot final : public Autopilot {
     answer("guided", refuse_guided, [&] { state_.guided = true; });
   }
   void request_arm(hal::Instant) override {
+    if (ignore_arm) {
+      asked.emplace_back("arm");
+      request_ = RequestState::pending;
+      return;
+    }
     answer("arm", refuse_arm, [&] { state_.armed = true; });
   }
   void request_takeoff(double height_m, hal::Instant) override {
@@ -78,6 +85,10 @@ class FakeAutopilot final : public Autopilot {
   void request_disarm(hal::Instant) override {
     answer("disarm", state_.in_air, [&] { state_.armed = false; });
   }
+  void cancel_request() override {
+    asked.emplace_back("cancel");
+    request_ = RequestState::none;
+  }
   RequestState request_state() const override { return request_; }
   const std::string& request_detail() const override { return detail_; }
 
@@ -87,7 +98,10 @@ class FakeAutopilot final : public Autopilot {
   }
   void set_velocity(const VelocitySetpoint&) override { ++setpoints; }
   void clear_setpoint() override { goal.reset(); }
-  void send_vision(const hal::PoseSample&) override { ++visions; }
+  void send_vision(const hal::PoseSample& sample) override {
+    if (visions++ > 0 && sample.reset_counter != vision_counter_) ++vision_resets;
+    vision_counter_ = sample.reset_counter;
+  }
   void halt() noexcept override { asked.emplace_back("halt"); }
 
  private:
@@ -134,6 +148,7 @@ class FakeAutopilot final : public Autopilot {
   std::optional<hal::Instant> last_;
   std::optional<double> climb_to_;
   bool landing_ = false;
+  std::uint8_t vision_counter_ = 0;
 };
 
 }  // namespace forager::flight

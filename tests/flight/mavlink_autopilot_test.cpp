@@ -269,13 +269,18 @@ TEST(MavlinkAutopilot, JournalsTheWireOnlyWhenAsked) {
 TEST(MavlinkAutopilot, RefusesAConfigurationThatCannotWork) {
   mocks::MemoryStreamPair line("udp autopilot", mocks::MemoryStreamKind::datagrams);
   hal::NullJournal journal;
-  MavlinkConfig config;
-  config.setpoint_interval = 0s;
-  const auto made =
-      MavlinkAutopilot::create(line.near(), journal, config, {}, MotorBay().claim("autopilot").value());
-  ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().code, hal::ErrorCode::invalid_argument);
-  EXPECT_NE(hal::describe(made.error()).find("setpoint_interval"), std::string::npos);
+  const auto refuses = [&](hal::Duration MavlinkConfig::*interval, const char* name) {
+    MavlinkConfig config;
+    config.*interval = 0s;
+    const auto made =
+        MavlinkAutopilot::create(line.near(), journal, config, {}, MotorBay().claim("autopilot").value());
+    ASSERT_FALSE(made) << name;
+    EXPECT_EQ(made.error().code, hal::ErrorCode::invalid_argument);
+    EXPECT_NE(hal::describe(made.error()).find(name), std::string::npos);
+  };
+  refuses(&MavlinkConfig::setpoint_interval, "setpoint_interval");
+  refuses(&MavlinkConfig::attitude_interval, "attitude_interval");
+  refuses(&MavlinkConfig::vision_interval, "vision_interval");
 }
 
 TEST(MavlinkAutopilot, WithAKeyItBelievesOnlySignedFrames) {
