@@ -16,7 +16,8 @@ class MavlinkServos;
 // One output of the autopilot that it leaves to us (SERVOn_FUNCTION 0 or 1), as a PWM channel. Pulses are
 // whole microseconds. A set is queued and sent by the autopilot bridge; what came of it shows at the next
 // set: refused (the output has another function), timeout (no acknowledgement in all tries). Without a link a
-// set answers disconnected and nothing is kept.
+// set answers disconnected, and is sent all the same when the link is back: the newest pulse is what the
+// output is to make, and an older one must not come back in its place.
 class MavlinkServo final : public hal::PwmChannel {
  private:
   friend class MavlinkServos;
@@ -32,16 +33,25 @@ class MavlinkServo final : public hal::PwmChannel {
   std::optional<std::uint16_t> wanted_us_;  // 0: no pulses; nothing: never told
   std::optional<std::uint16_t> acked_us_;
   std::optional<hal::Error> failure_;
+  std::uint16_t sent_us_ = 0;
+  int tries_ = 0;  // unanswered; 0: nothing under way
+  hal::Instant next_try_;
+  std::uint64_t sent_as_ = 0;  // number of the newest try
 };
 
-// MAV_CMD_DO_SET_SERVO for the outputs 1 to 16 of one ArduPilot. An acknowledgement does not say which output
-// it is for, so one command is under way at a time; changed pulses go first, and every output that was told
-// one is told again each refresh interval, as an autopilot that was restarted knows nothing of it.
+// MAV_CMD_DO_SET_SERVO for the outputs 1 to 16 of one ArduPilot. Changed pulses go first, and every output
+// that was told one is told again each refresh interval, as an autopilot that was restarted knows nothing of
+// it.
+//
+// An acknowledgement does not say which output it is for, so the next command waits for the answer to the one
+// before, but not for long: a lost one must not keep the other brake waiting. When two are unanswered an
+// acknowledgement counts for the newer one and the older is told again; a refusal counts for neither.
 //
 // Crash: the autopilot keeps the last pulse for as long as it runs.
 class MavlinkServos {
  public:
   static constexpr hal::Duration kRefresh = std::chrono::milliseconds(500);
+  static constexpr hal::Duration kTurn = std::chrono::milliseconds(100);  // of one output, unanswered
 
   explicit MavlinkServos(const MavlinkConfig& config);
 
@@ -59,17 +69,18 @@ class MavlinkServos {
  private:
   friend class MavlinkServo;
   [[nodiscard]] MavlinkServo* next(hal::Instant now);
-  void finish(std::optional<hal::Error> failure);
+  void give_up(hal::Instant now);
+  // The one whose try is the newest unanswered one; null: none.
+  [[nodiscard]] MavlinkServo* newest_unanswered();
+  void finish(MavlinkServo& servo, std::optional<hal::Error> failure);
 
   hal::Duration timeout_;
   int max_tries_;
   std::array<MavlinkServo, 16> outputs_;
   std::array<hal::Instant, 16> told_at_{};
   bool link_up_ = false;
-  MavlinkServo* pending_ = nullptr;
-  std::uint16_t pending_us_ = 0;
-  int tries_ = 0;
-  hal::Instant next_try_;
+  std::optional<hal::Instant> turn_ends_;  // nothing: the newest command was answered
+  std::uint64_t sent_ = 0;
   std::size_t turn_ = 0;  // where the search for the next one begins: nobody starves
 };
 

@@ -96,10 +96,46 @@ TEST_F(AutopilotOutputs, WithoutALinkNothingIsTaken) {
   bench_.run(5s);
   (void)came();
   EXPECT_EQ(hal::ErrorCode::disconnected, output(9).set_pulse(1180us).error().code);
-  EXPECT_FALSE(output(9).pulse().has_value());
-  bench_.heartbeats(true);
   bench_.run(2s);
-  EXPECT_THAT(came(), testing::IsEmpty()) << "an open brake must not come out of the past";
+  EXPECT_THAT(came(), testing::IsEmpty());
+}
+
+TEST_F(AutopilotOutputs, WhatWasWantedLastIsWhatComesWhenTheLinkIsBack) {
+  ASSERT_TRUE(output(9).set_pulse(1180us));  // open
+  bench_.step();
+  answer();
+  bench_.heartbeats(false);
+  bench_.run(5s);
+  (void)came();
+  EXPECT_EQ(hal::ErrorCode::disconnected, output(9).set_pulse(1725us).error().code);  // lock
+  bench_.heartbeats(true);
+  bench_.run(1200ms);
+  const auto told = came();
+  ASSERT_FALSE(told.empty());
+  for (const auto& command : told)
+    EXPECT_EQ(command, "9=1725") << "an open brake must not come out of the past";
+}
+
+TEST_F(AutopilotOutputs, ALostCommandDoesNotKeepTheOtherBrakeWaiting) {
+  ASSERT_TRUE(output(9).set_pulse(1725us));
+  ASSERT_TRUE(output(10).set_pulse(1875us));
+  bench_.run(140ms);  // no answer to the first
+  EXPECT_THAT(came(), testing::ElementsAre("9=1725", "10=1875"));
+  answer();  // to one of them: the newer
+  bench_.run(200ms);
+  EXPECT_THAT(came(), testing::ElementsAre("9=1725")) << "the older is told again";
+  answer();
+  bench_.run(200ms);
+  EXPECT_THAT(came(), testing::IsEmpty());
+}
+
+TEST_F(AutopilotOutputs, ARefusalThatMayBeOfEitherIsBlamedOnNeither) {
+  ASSERT_TRUE(output(9).set_pulse(1725us));
+  ASSERT_TRUE(output(10).set_pulse(1875us));
+  bench_.run(140ms);
+  answer(kFailed);
+  EXPECT_TRUE(output(9).set_pulse(1725us));
+  EXPECT_TRUE(output(10).set_pulse(1875us));
 }
 
 TEST_F(AutopilotOutputs, RefusesPulsesNoServoKnows) {
