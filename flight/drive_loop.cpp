@@ -50,7 +50,8 @@ DriveLoop::DriveLoop(const DriveConfig& config, const DriveDevices& devices, Dri
       mission_(std::move(mission)),
       brakes_(devices.left_brake, devices.right_brake, devices.journal, config.brakes, now),
       steer_(config.steer),
-      filter_(config.vision),
+      own_filter_(config.vision),
+      filter_(devices.vision != nullptr ? devices.vision : &own_filter_),
       guard_(config.guard),
       interlocks_(devices.journal),
       deadman_(config.deadman) {
@@ -60,7 +61,10 @@ DriveLoop::DriveLoop(const DriveConfig& config, const DriveDevices& devices, Dri
 // pose -> steps -> brakes and thrust, with the safety core between the last two.
 void DriveLoop::update(hal::Instant now) {
   alive_level_ = !alive_level_;
-  if (alive_ != nullptr) static_cast<void>(alive_->set(alive_level_));  // a dead line ends in locked brakes
+  if (alive_ != nullptr) {
+    const auto set = alive_->set(alive_level_);  // a dead line ends in locked brakes
+    note_first(alive_failed_, set ? nullptr : &set.error(), now);
+  }
   if (done()) {
     brakes_.update(now);
     return;
@@ -72,6 +76,13 @@ void DriveLoop::update(hal::Instant now) {
   judge(now);
   run_phase(now);
   act(now);
+  autopilot_->send(now);
+}
+
+// The first of failures in a row.
+void DriveLoop::note_first(bool& failed, const hal::Error* error, hal::Instant now) {
+  if (error != nullptr && !failed) journal_->note(now, kSource, hal::describe(*error));
+  failed = error != nullptr;
 }
 
 void DriveLoop::sense(hal::Instant now) {
@@ -79,9 +90,11 @@ void DriveLoop::sense(hal::Instant now) {
   if (deadman_.alive()) autopilot_->feed_deadman(now);
   autopilot_->update(now);
   input_ = {};
-  if (const auto sample = pose_->poll(now); sample && *sample) {
-    if (const auto passed = filter_.update(**sample)) autopilot_->send_vision(*passed);
-    const auto& newest = filter_.newest();
+  const auto sample = pose_->poll(now);
+  note_first(pose_failed_, sample ? nullptr : &sample.error(), now);
+  if (sample && *sample) {
+    if (const auto passed = filter_->update(**sample, now)) autopilot_->send_vision(*passed);
+    const auto& newest = filter_->newest();
     if (newest && newest->stamp > last_pose_) {
       last_pose_ = newest->stamp;
       input_.pose = newest;
@@ -98,8 +111,9 @@ void DriveLoop::sense(hal::Instant now) {
 // What stands in the way matters while it rolls, and then until it has gone.
 void DriveLoop::look(hal::Instant now) {
   if (depth_ == nullptr) return;
-  if (const auto frame = depth_->poll(now); frame && *frame)
-    guard_.check(**frame, status_.speed_m_s, status_.pose_world.pitch_rad, now);
+  const auto frame = depth_->poll(now);
+  note_first(depth_failed_, frame ? nullptr : &frame.error(), now);
+  if (frame && *frame) guard_.check(**frame, status_.speed_m_s, status_.pose_world.pitch_rad, now);
   const bool clear = guard_.latest(now).way == WayAhead::clear;
   if (clear)
     blocked_ = false;
@@ -212,6 +226,8 @@ bool DriveLoop::waited(hal::Duration allowed, hal::Instant now) const {
 void DriveLoop::halt() noexcept {
   halt_asked_ = true;
   brakes_.halt();
+  if (status_.end == DriveEnd::pilot) return;  // it is theirs, and may be anywhere
+  if (status_.phase == DrivePhase::guided || status_.phase == DrivePhase::arming) landing_asked_ = true;
   autopilot_->halt();
 }
 

@@ -36,6 +36,9 @@ struct DriveDevices {
   hal::DigitalOut* alive = nullptr;
   hal::DigitalIn* stop_button = nullptr;  // active: pressed, or its wire is broken (board file's polarity)
   hal::DepthSource* depth = nullptr;      // with it, the way ahead is watched
+  // The vehicle's, where others read its localisation before and after: a new filter would take the way in
+  // between for a jump, and count resets from 0. Without one the loop has its own.
+  VisionFilter* vision = nullptr;
 };
 
 struct DriveConfig {
@@ -54,7 +57,7 @@ struct DriveConfig {
   hal::Duration attitude_timeout = std::chrono::milliseconds(250);  // ATTITUDE not heard: link lost
   hal::Duration start_timeout = std::chrono::seconds(30);
   hal::Duration blocked_for = std::chrono::seconds(30);  // something in the way for so long ends the mission
-  hal::Duration stopping_for = std::chrono::seconds(4);  // until it has to be disarmed
+  hal::Duration stopping_for = std::chrono::seconds(4);  // until it has to be disarmed; longer on one brake
   hal::Duration command_life = std::chrono::milliseconds(150);  // of attitude and brake commands
   double corridor_margin_m = 0.05;  // stops this much before the corridor's border
 };
@@ -109,8 +112,9 @@ struct DriveStatus {
 // Whoever runs it calls feed() (the dead-man) and go() (the mission's own command, with an end) again and
 // again. Both brakes are locked and thrust is zero in every phase but driving, and there whenever a row of
 // kInterlockTable does not hold. A row that latches ends the mission in stopping: thrust zero, brakes locked,
-// motors stopped through the autopilot unless a pilot has it. Every command that goes out says until when it
-// holds; nothing here needs a later call to become safe.
+// motors stopped through the autopilot unless a pilot has it or takes it meanwhile. What decides goes out in
+// the same update. Every command that goes out says until when it holds; nothing here needs a later call to
+// become safe.
 //
 // update() allocates nothing while driving, but what the journal does.
 class DriveLoop final : public hal::Halt {
@@ -123,7 +127,7 @@ class DriveLoop final : public hal::Halt {
   // The mission wants it to move, until then.
   void go(hal::Instant valid_until) { go_until_ = valid_until; }
 
-  // Brakes locked and motors told to stop at once; ends at the next update().
+  // Brakes locked and motors told to stop at once, unless a pilot has the vehicle; ends at the next update().
   void halt() noexcept override;
 
   [[nodiscard]] bool done() const { return status_.phase == DrivePhase::done; }
@@ -147,6 +151,9 @@ class DriveLoop final : public hal::Halt {
   void stop(DriveEnd why, std::string_view detail, hal::Instant now);
   void stopping(hal::Instant now);
   [[nodiscard]] bool refused(std::string_view what, hal::Instant now);
+  [[nodiscard]] bool at_goal() const;
+  void hand_over();
+  void note_first(bool& failed, const hal::Error* error, hal::Instant now);
   [[nodiscard]] bool waited(hal::Duration allowed, hal::Instant now) const;
   void enter(DrivePhase phase, hal::Instant now);
 
@@ -160,7 +167,8 @@ class DriveLoop final : public hal::Halt {
   DriveMission mission_;
   servo::BrakePair brakes_;
   servo::BrakeSteer steer_;
-  VisionFilter filter_;
+  VisionFilter own_filter_;
+  VisionFilter* filter_;
   ObstacleGuard guard_;
   Interlocks interlocks_;
   Deadman deadman_;
@@ -174,6 +182,10 @@ class DriveLoop final : public hal::Halt {
   bool button_failed_ = false;
   bool button_pressed_ = false;
   bool halt_asked_ = false;
+  bool landing_asked_ = false;  // by halt(): it may leave GUIDED for that
+  bool alive_failed_ = false;
+  bool pose_failed_ = false;
+  bool depth_failed_ = false;
   bool was_armed_ = false;
   bool blocked_ = false;  // something stands in the way
   hal::Instant ask_again_at_;

@@ -1,10 +1,12 @@
 // The ends of a drive: getting armed, the reasons to stop, and stopping.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <utility>
 
 #include "flight/drive_loop.hpp"
+#include "hal/units.hpp"
 
 namespace forager::flight {
 namespace {
@@ -44,7 +46,13 @@ void DriveLoop::wait_for_links(hal::Instant now) {
   if (halt_asked_) return stop(DriveEnd::halted, "asked to stop before the start", now);
   if (autopilot_->state().link_up && autopilot_->state().armed)
     return stop(DriveEnd::pilot, "the vehicle is armed already: somebody else has it", now);
+  const bool nothing = mission_.steps.empty();
+  const auto usable = servo::BrakeSteer::usable(mission_.steps, mission_.goal_heading_rad);
+  if (!nothing && !usable) return stop(DriveEnd::refused, usable.error().detail, now);
   if (interlocks_.may_arm() && autopilot_->state().pose_valid) {
+    // A path within the goal's margin has no steps.
+    if (nothing && at_goal()) return stop(DriveEnd::arrived, "at the goal already", now);
+    if (nothing) return stop(DriveEnd::refused, usable.error().detail, now);
     enter(DrivePhase::guided, now);
     return autopilot_->request_guided(now);
   }
@@ -52,6 +60,14 @@ void DriveLoop::wait_for_links(hal::Instant now) {
   for (const InterlockRule& rule : kInterlockTable)
     if (rule.to_arm && !interlocks_.holds(rule.interlock)) return stop(end_of(rule.interlock), rule.why, now);
   stop(DriveEnd::refused, "the autopilot does not know where it is", now);
+}
+
+bool DriveLoop::at_goal() const {
+  const hal::Pose& at = status_.pose_world;
+  const auto& heading = mission_.goal_heading_rad;
+  return hal::distance_xy(at.position, mission_.corridor.path().back()) <= config_.steer.goal_margin_m &&
+         (!heading ||
+          std::abs(hal::angle_difference(*heading, at.yaw_rad)) <= config_.steer.heading_margin_rad);
 }
 
 bool DriveLoop::refused(std::string_view what, hal::Instant now) {
@@ -108,19 +124,43 @@ void DriveLoop::stop(DriveEnd why, std::string_view detail, hal::Instant now) {
   fmt::format_to(std::back_inserter(line), "end {}: {}", to_string(why), detail);
   journal_->note(now, kSource, {line.data(), line.size()});
   const bool never_armed = status_.phase == DrivePhase::waiting || status_.phase == DrivePhase::guided;
-  if (never_armed || why == DriveEnd::pilot) return enter(DrivePhase::done, now);
+  if (why == DriveEnd::pilot) {
+    // Armed on our request, if at all: an arming that nobody knows of is left to nobody.
+    const bool ours = status_.phase == DrivePhase::arming && !autopilot_->state().in_air;
+    hand_over();
+    if (ours) autopilot_->request_disarm(now);
+    return enter(ours || brakes_.stopping() ? DrivePhase::stopping : DrivePhase::done, now);
+  }
+  if (never_armed) return enter(DrivePhase::done, now);
   enter(DrivePhase::stopping, now);
   autopilot_->request_stop_motors(now);
   ask_again_at_ = now + kAskAgain;
 }
 
-// It stands on its wheels, both locked, so the motors may be stopped whatever the land detector says.
+// Nothing of ours is sent to a vehicle that somebody else has.
+void DriveLoop::hand_over() {
+  autopilot_->clear_setpoint();
+  autopilot_->cancel_request();
+}
+
+// It stands on its wheels, both locked, so the motors may be stopped whatever the land detector says - unless
+// a pilot took it, who may be flying by the time the request arrives. One brake needs to be told of the
+// motion until it stands.
 void DriveLoop::stopping(hal::Instant now) {
   const AutopilotState& autopilot = autopilot_->state();
+  const bool theirs = autopilot.link_up && autopilot.armed && !autopilot.guided && !landing_asked_;
+  if (theirs && status_.end != DriveEnd::pilot) {
+    journal_->note(now, kSource, "end pilot: somebody took the vehicle while it stopped");
+    status_.end = DriveEnd::pilot;
+    status_.detail = "somebody took the vehicle while it stopped: " + status_.detail;
+    hand_over();
+  }
   const bool pending = autopilot_->request_state() == RequestState::pending;
-  if ((autopilot.link_up && !autopilot.armed && !pending) || waited(config_.stopping_for, now))
+  const bool disarmed = autopilot.link_up && !autopilot.armed;
+  const bool settled = !pending && (disarmed || status_.end == DriveEnd::pilot);
+  if ((settled || waited(config_.stopping_for, now)) && !brakes_.stopping())
     return enter(DrivePhase::done, now);
-  if (now < ask_again_at_ || pending) return;
+  if (settled || pending || now < ask_again_at_) return;
   ask_again_at_ = now + kAskAgain;
   autopilot_->request_stop_motors(now);
 }

@@ -31,17 +31,17 @@ void Localisation::update(hal::Instant now) {
   } else {
     source_failed_ = false;
     if (*sample) {
-      if (const auto passed = filter_.update(**sample)) autopilot_->send_vision(*passed);
-      if (filter_.stats().resets != resets_) {
-        resets_ = filter_.stats().resets;
+      if (const auto passed = filter_->update(**sample, now)) autopilot_->send_vision(*passed);
+      if (filter_->stats().resets != resets_) {
+        resets_ = filter_->stats().resets;
         history_.clear();
         reset_pending_ = true;
         journal_->note(now, kSource, "the source moved its world frame");
       }
-      if (const auto& newest = filter_.newest()) history_.add(newest->stamp, newest->pose);
+      if (const auto& newest = filter_->newest()) history_.add(newest->stamp, newest->pose);
     }
   }
-  const VisionHealth health = filter_.health(now);
+  const VisionHealth health = filter_->health(now);
   if (health != health_) journal_->note(now, kSource, text_of(health));
   health_ = health;
   if (healthy())
@@ -51,8 +51,8 @@ void Localisation::update(hal::Instant now) {
 }
 
 std::optional<hal::Pose> Localisation::pose_world() const {
-  if (!filter_.newest()) return std::nullopt;
-  return filter_.newest()->pose;
+  if (!filter_->newest()) return std::nullopt;
+  return filter_->newest()->pose;
 }
 
 bool Localisation::take_reset() {

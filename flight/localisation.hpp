@@ -18,7 +18,12 @@ class Localisation {
  public:
   Localisation(hal::PoseSource& source, Autopilot& autopilot, hal::Journal& journal,
                const VisionFilterConfig& config)
-      : source_(&source), autopilot_(&autopilot), journal_(&journal), filter_(config) {}
+      : source_(&source), autopilot_(&autopilot), journal_(&journal), own_(config), filter_(&*own_) {}
+  // Borrows the filter of a vehicle on which others read the localisation at other times.
+  Localisation(hal::PoseSource& source, Autopilot& autopilot, hal::Journal& journal, VisionFilter& filter)
+      : source_(&source), autopilot_(&autopilot), journal_(&journal), filter_(&filter) {}
+  Localisation(const Localisation&) = delete;
+  Localisation& operator=(const Localisation&) = delete;
 
   void update(hal::Instant now);
 
@@ -30,13 +35,14 @@ class Localisation {
   // True once after the source has moved its world frame (a reset): goals set before mean something else now.
   [[nodiscard]] bool take_reset();
   [[nodiscard]] const PoseHistory& history() const { return history_; }
-  [[nodiscard]] const VisionFilterStats& stats() const { return filter_.stats(); }
+  [[nodiscard]] const VisionFilterStats& stats() const { return filter_->stats(); }
 
  private:
   hal::PoseSource* source_;
   Autopilot* autopilot_;
   hal::Journal* journal_;
-  VisionFilter filter_;
+  std::optional<VisionFilter> own_;
+  VisionFilter* filter_;
   PoseHistory history_;
   VisionHealth health_ = VisionHealth::waiting;
   std::optional<hal::Instant> bad_since_;

@@ -23,8 +23,9 @@ bool is_identity(const hal::Pose& pose) {
 VisionFilter::VisionFilter(const VisionFilterConfig& config)
     : config_(config), has_mount_(!is_identity(config.camera_on_body)) {}
 
-std::optional<hal::PoseSample> VisionFilter::update(const hal::PoseSample& raw) {
-  if (!is_finite(raw.pose) || (last_seen_ && raw.stamp <= *last_seen_)) {
+std::optional<hal::PoseSample> VisionFilter::update(const hal::PoseSample& raw, hal::Instant now) {
+  const bool in_order = (!last_seen_ || raw.stamp > *last_seen_) && raw.stamp - now <= config_.most_ahead;
+  if (!is_finite(raw.pose) || !in_order) {
     ++stats_.unusable;
     return std::nullopt;
   }

@@ -22,6 +22,9 @@ struct VisionFilterConfig {
   int reset_after_samples = 10;
   hal::Duration reset_after = std::chrono::milliseconds(300);
   hal::Duration stale_after = std::chrono::milliseconds(300);  // ArduPilot calls vision unhealthy then
+  // A stamp further ahead of now than this is a broken clock. Believed, it would make every later sample "not
+  // newer" and itself fresh for as long as it lies ahead.
+  hal::Duration most_ahead = std::chrono::milliseconds(50);
   hal::PoseConfidence min_confidence = hal::PoseConfidence::low;
 };
 
@@ -38,7 +41,7 @@ struct VisionFilterStats {
   std::uint64_t thinned = 0;         // good, but sooner than min_interval
   std::uint64_t jumps = 0;           // dropped as jumps
   std::uint64_t low_confidence = 0;  // dropped for it
-  std::uint64_t unusable = 0;        // not finite, or not newer than the one before
+  std::uint64_t unusable = 0;        // not finite, not newer than the one before, or of the future
   std::uint64_t resets = 0;
 };
 
@@ -51,7 +54,7 @@ class VisionFilter {
   explicit VisionFilter(const VisionFilterConfig& config);
 
   // The body's sample to hand to the autopilot, or nullopt. Its reset_counter is ours, from 0.
-  [[nodiscard]] std::optional<hal::PoseSample> update(const hal::PoseSample& sample);
+  [[nodiscard]] std::optional<hal::PoseSample> update(const hal::PoseSample& sample, hal::Instant now);
 
   [[nodiscard]] VisionHealth health(hal::Instant now) const;
   // The newest accepted sample, thinned or not: the best estimate of the body's pose.

@@ -35,8 +35,7 @@ std::string_view to_string(SteerFault fault) {
 BrakeSteer::BrakeSteer(const BrakeSteerConfig& config)
     : config_(config), estimate_(config.estimate), learnt_(config.start) {}
 
-hal::Result<> BrakeSteer::begin(std::span<const SteerStep> steps, std::optional<double> goal_heading_rad,
-                                hal::Instant now) {
+hal::Result<> BrakeSteer::usable(std::span<const SteerStep> steps, std::optional<double> goal_heading_rad) {
   const auto refuse = [](const char* why) {
     return hal::fail(hal::ErrorCode::invalid_argument, "brake steering", "begin", why,
                      "Give at least one step with finite coordinates in metres.");
@@ -46,6 +45,12 @@ hal::Result<> BrakeSteer::begin(std::span<const SteerStep> steps, std::optional<
     if (!std::isfinite(step.x_m) || !std::isfinite(step.y_m)) return refuse("a step is not finite");
   if (goal_heading_rad && !std::isfinite(*goal_heading_rad))
     return refuse("the goal's heading is not finite");
+  return {};
+}
+
+hal::Result<> BrakeSteer::begin(std::span<const SteerStep> steps, std::optional<double> goal_heading_rad,
+                                hal::Instant now) {
+  FORAGER_TRY(usable(steps, goal_heading_rad));
   steps_.assign(steps.begin(), steps.end());
   goal_heading_rad_ = goal_heading_rad;
   step_ = 0;

@@ -84,8 +84,11 @@ class BrakeSteer {
  public:
   explicit BrakeSteer(const BrakeSteerConfig& config);
 
+  // Whether begin() would take them; the same errors.
+  [[nodiscard]] static hal::Result<> usable(std::span<const SteerStep> steps,
+                                            std::optional<double> goal_heading_rad);
   // Starts towards the last of these steps. goal_heading_rad: the heading to have there, if any.
-  // Errors: invalid_argument (no step, a step that is not finite).
+  // Errors: invalid_argument (no step, a step or heading that is not finite).
   [[nodiscard]] hal::Result<> begin(std::span<const SteerStep> steps, std::optional<double> goal_heading_rad,
                                     hal::Instant now);
   // Whoever wants it to move says so again before this runs out.

@@ -69,7 +69,6 @@ struct SteerStats {
   std::uint32_t dabs = 0;     // touches of one brake while rolling
   std::uint32_t holds = 0;    // stops for an expired command or an old pose
   std::uint32_t speed_checks = 0;
-  double thrust_s = 0.0;  // thrust times seconds
 };
 
 }  // namespace forager::servo

@@ -215,7 +215,6 @@ void BrakeSteer::watch(hal::Instant now) {
   } else {
     runaway_since_.reset();
   }
-  if (phase_ == SteerPhase::turning || phase_ == SteerPhase::driving) stats_.thrust_s += 0.0;
 }
 
 // Standing again after the brakes were told to lock: how long did they take?

@@ -34,6 +34,7 @@ void MotionEstimate::start(const hal::PoseSample& sample) {
 void MotionEstimate::predict(hal::Instant now, double accel_m_s2, double yaw_accel_rad_s2) {
   const hal::Duration step = std::clamp(now - now_, hal::Duration::zero(), config_.longest_step);
   now_ = now;
+  predicted_ = true;
   if (!last_pose_ || step == hal::Duration::zero()) return;
   const double dt = hal::to_seconds(step);
   const double speed = speed_ + dt * accel_m_s2;
@@ -52,7 +53,8 @@ void MotionEstimate::predict(hal::Instant now, double accel_m_s2, double yaw_acc
 bool MotionEstimate::take(const hal::PoseSample& sample) {
   const bool usable = hal::is_finite(sample.pose.position) && std::isfinite(sample.pose.yaw_rad) &&
                       sample.confidence != hal::PoseConfidence::failed &&
-                      (!last_pose_ || sample.stamp > *last_pose_);
+                      (!last_pose_ || sample.stamp > *last_pose_) &&
+                      (!predicted_ || sample.stamp - now_ <= config_.most_ahead);
   if (!usable) return false;
   const bool moved = last_pose_ && sample.reset_counter != reset_counter_;
   const bool first = !last_pose_;

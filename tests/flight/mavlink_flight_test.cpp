@@ -79,7 +79,7 @@ class Flight {
     sample.stamp = now_;
     sample.pose = body();
     sample.pose.position = sample.pose.position + vision_offset;
-    if (const auto passed = filter_.update(sample)) ours_->send_vision(*passed);
+    if (const auto passed = filter_.update(sample, now_)) ours_->send_vision(*passed);
   }
 
   hal::Instant now_{100s};

@@ -30,7 +30,7 @@ class VisionFilterTest : public ::testing::Test {
     sample.pose.yaw_rad = yaw_rad;
     sample.confidence = confidence_;
     sample.reset_counter = source_counter_;
-    return filter_.update(sample);
+    return filter_.update(sample, now_);
   }
 
   // What was passed on while the source stays at a place for `samples`.
@@ -150,13 +150,31 @@ TEST_F(VisionFilterTest, NeverPassesWhatIsNotANumberOrNotNewer) {
   EXPECT_EQ(filter_.stats().unusable, 3U);
 }
 
+// One sample of the future must neither blind the filter for what comes nor keep it good meanwhile.
+TEST_F(VisionFilterTest, AStampThatHasNotComeYetIsDropped) {
+  stay({0, 0, 1}, 20);
+  hal::PoseSample ahead;
+  ahead.stamp = now_ + 5s;
+  ahead.pose.position = {0, 0, 1};
+  EXPECT_FALSE(filter_.update(ahead, now_));
+  EXPECT_EQ(filter_.stats().unusable, 1U);
+  EXPECT_FALSE(stay({0, 0, 1}, 20).empty()) << "the next true one counts";
+  EXPECT_EQ(filter_.health(now_ + 300ms), VisionHealth::stale);
+}
+
+TEST_F(VisionFilterTest, AStampALittleAheadIsAClockThatIsALittleOff) {
+  hal::PoseSample ahead;
+  ahead.stamp = now_ + 50ms;
+  EXPECT_TRUE(filter_.update(ahead, now_));
+}
+
 TEST(VisionFilterMount, PassesTheBodyNotTheCamera) {
   VisionFilterConfig config;
   config.camera_on_body = {{0.1, 0.0, -0.05}, 0.0, hal::kPi / 2, 0.0};  // looking down
   VisionFilter filter(config);
   hal::PoseSample sample;
   sample.pose = {{2.1, 3.0, 0.95}, 0.0, hal::kPi / 2, 0.0};
-  const auto passed = filter.update(sample);
+  const auto passed = filter.update(sample, sample.stamp);
   ASSERT_TRUE(passed);
   EXPECT_NEAR(passed->pose.position.x, 2.0, 1e-6);
   EXPECT_NEAR(passed->pose.position.y, 3.0, 1e-6);

@@ -92,6 +92,15 @@ TEST(MotionEstimate, TakesNothingItCannotUse) {
   EXPECT_TRUE(std::isfinite(estimate.yaw_rate_rad_s()));
 }
 
+TEST(MotionEstimate, APoseOfTheFutureIsNoPose) {
+  MotionEstimate estimate({});
+  estimate.predict(Instant{1s}, 0.0, 0.0);
+  EXPECT_FALSE(estimate.take(sample(Instant{6s}, 1.0, 0.0, 0.0)));
+  EXPECT_TRUE(estimate.take(sample(Instant{1s}, 1.0, 0.0, 0.0))) << "and does not make the next one old";
+  EXPECT_EQ(estimate.pose_age(Instant{1s + 20ms}), 20ms);
+  EXPECT_EQ(estimate.pose_age(Instant{500ms}), hal::Duration::max()) << "a clock that went back";
+}
+
 TEST(MotionEstimate, StartsAnewWhereTheSourceRelocalised) {
   MotionEstimate estimate({});
   EXPECT_TRUE(estimate.take(sample(Instant{1s}, 0.0, 0.0, 0.0)));
