@@ -27,7 +27,6 @@ flight::HybridConfig mode_config(const HybridScene& scene) {
   flight::HybridConfig config;
   config.hop = scene.route.hop;
   config.flight.speed_m_s = scene.flight_m_s;
-  config.vision = scene.drive.drive.vision;
   return config;
 }
 
@@ -92,9 +91,10 @@ class Runner {
       : scene_(&scene),
         options_(options),
         rig_(&rig),
+        vision_(scene.drive.drive.vision),
         devices_(rig.devices(journal)),
-        ground_(ground_config(scene), devices_),
-        mode_(mode_config(scene), {devices_.autopilot, ground_, devices_.pose, journal}, route,
+        ground_(ground_config(scene), with_vision(devices_)),
+        mode_(mode_config(scene), {devices_.autopilot, ground_, devices_.pose, vision_, journal}, route,
               scene.obstacles, Instant{}),
         judge_(scene, result_) {
     result_.seed = options.seed;
@@ -125,6 +125,10 @@ class Runner {
   }
 
  private:
+  [[nodiscard]] flight::DriveDevices with_vision(flight::DriveDevices devices) {
+    devices.vision = &vision_;
+    return devices;
+  }
   void strike(Instant now) {
     if (options_.fault == DriveFault::none || struck_ || mode_.status().phase != flight::HybridPhase::flying)
       return;
@@ -142,6 +146,7 @@ class Runner {
   const HybridScene* scene_;
   HybridRunOptions options_;
   DriveRig* rig_;
+  flight::VisionFilter vision_;
   flight::DriveDevices devices_;
   flight::DriveGround ground_;
   flight::HybridMode mode_;
@@ -154,8 +159,8 @@ class Runner {
 }  // namespace
 
 bool HybridResult::arrived(const HybridScene& scene) const {
-  return end == flight::HybridEnd::arrived && stands && side_clearance_m > 0.0 && over_clearance_m > 0.0 &&
-         position_error_m <= scene.drive.steps.goal_margin_m;
+  return end == flight::HybridEnd::arrived && stands && braked_in_air && side_clearance_m > 0.0 &&
+         over_clearance_m > 0.0 && position_error_m <= scene.drive.steps.goal_margin_m;
 }
 
 hal::Result<HybridResult> run_hybrid(const HybridScene& scene, const HybridRunOptions& options) {

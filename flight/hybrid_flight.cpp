@@ -34,9 +34,21 @@ void HybridMode::wait_for_mode(hal::Instant now) {
 }
 
 void HybridMode::wait_for_arming(hal::Instant now) {
+  if (!halt_asked_ && autopilot_->state().link_up && !autopilot_->state().guided) return give_up_arming(now);
   if (refused("the autopilot did not arm", now) || !autopilot_->state().armed) return;
   enter(HybridPhase::climbing, now);
   autopilot_->request_takeoff(hop().climb_m, now);
+}
+
+// A pilot took it while it was being armed. It stands on the ground, perhaps with its motors running by now:
+// disarmed once, which an autopilot that flies refuses.
+void HybridMode::give_up_arming(hal::Instant now) {
+  set_end(HybridEnd::pilot, "somebody took it while it was being armed", now);
+  autopilot_->clear_setpoint();
+  autopilot_->cancel_request();
+  if (autopilot_->state().in_air) return enter(HybridPhase::done, now);
+  autopilot_->request_disarm(now);
+  enter(HybridPhase::stopped, now);
 }
 
 // In climbing and flying, what ends the flight early; false: go on.
@@ -45,10 +57,10 @@ bool HybridMode::gone_wrong_in_the_air(hal::Instant now) {
   const auto bad = localisation_.bad_since();
   if (!autopilot.link_up)
     give_up_command(HybridEnd::autopilot_lost, "no heartbeat from the autopilot", now);
+  else if (halt_asked_)  // before GUIDED is asked for: halt() made it leave that
+    stop(HybridEnd::halted, "asked to stop", now);
   else if (!autopilot.guided || !autopilot.armed)
     give_up_command(HybridEnd::pilot, autopilot.armed ? "the autopilot left GUIDED" : "it disarmed", now);
-  else if (halt_asked_)
-    stop(HybridEnd::halted, "asked to stop", now);
   else if (bad && now - *bad >= config_.pose_allowance)
     stop(HybridEnd::pose_lost, "no trustworthy pose in the air", now);
   else
@@ -139,9 +151,11 @@ void HybridMode::stop(HybridEnd why, std::string_view detail, hal::Instant now) 
   const bool rolled = status_.phase == HybridPhase::rolling;  // the driver has disarmed, or does
   if (rolled || (!autopilot.armed && !may_arm)) return enter(HybridPhase::done, now);
   autopilot_->clear_setpoint();
-  if (autopilot.in_air)
+  // One that has left GUIDED lands already, or is somebody else's.
+  const bool lands = status_.phase == HybridPhase::landing;
+  if (autopilot.in_air && (autopilot.guided || lands))
     autopilot_->request_land(now);
-  else
+  else if (!autopilot.in_air)
     autopilot_->request_disarm(now);
   ask_again_at_ = now + kAskAgain;
   landing_mode_.reset();
@@ -152,6 +166,11 @@ void HybridMode::come_down(hal::Instant now) {
   const AutopilotState& autopilot = autopilot_->state();
   const bool asked = autopilot_->request_state() == RequestState::pending;
   const bool down = !autopilot.armed && !autopilot.in_air && !asked;
+  if (status_.end == HybridEnd::pilot) {  // asked once, above
+    if (autopilot.in_air) autopilot_->cancel_request();
+    if (!asked || autopilot.in_air || !autopilot.link_up) enter(HybridPhase::done, now);
+    return;
+  }
   if (!autopilot.link_up || down || taken_while_landing() || waited(config_.landing_timeout, now))
     return enter(HybridPhase::done, now);
   ask_down(now);

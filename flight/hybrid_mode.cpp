@@ -42,10 +42,24 @@ HybridMode::HybridMode(const HybridConfig& config, const HybridDevices& devices,
       journal_(&devices.journal),
       route_(std::move(route)),
       known_(std::move(known)),
-      localisation_(devices.pose, devices.autopilot, devices.journal, config.vision),
+      localisation_(devices.pose, devices.autopilot, devices.journal, devices.vision),
       flight_(config.flight) {
   enter(HybridPhase::standing, now);
   if (route_.legs.empty()) set_end(HybridEnd::arrived, "nowhere to go", now), enter(HybridPhase::done, now);
+}
+
+HybridMode::~HybridMode() {
+  if (!done()) halt();
+}
+
+// What the next update() would do may never be done. On the ground and disarmed there is nothing to stop; who
+// has the vehicle in the air is the autopilot bridge's to know.
+void HybridMode::halt() noexcept {
+  halt_asked_ = true;
+  if (status_.phase == HybridPhase::rolling)
+    ground_->halt();
+  else if (status_.phase != HybridPhase::standing && !done() && status_.end != HybridEnd::pilot)
+    autopilot_->halt();
 }
 
 void HybridMode::update(hal::Instant now) {

@@ -23,15 +23,14 @@ struct HybridDevices {
   Autopilot& autopilot;
   GroundDriver& ground;
   hal::PoseSource& pose;
+  VisionFilter& vision;  // the vehicle's one; the ground driver uses it while it drives
   hal::Journal& journal;
 };
 
 struct HybridConfig {
   HopLimits hop;  // for a hop planned on the way
   StepFlightConfig flight;
-  VisionFilterConfig vision;
-  double wheels_below_m = 0.0;  // of the pose's origin: heights of hops are of the wheels
-  double stands_m_s = 0.05;     // slower is standing
+  double stands_m_s = 0.05;                                  // slower is standing
   hal::Duration stand_for = std::chrono::milliseconds(500);  // before the motors may start, and to hover
   double takeoff_off_m = 0.25;   // farther from the planned take-off it does not fly
   double landing_off_m = 0.30;   // farther from the planned landing it flies the rest first
@@ -40,7 +39,9 @@ struct HybridConfig {
   hal::Duration ask_timeout = std::chrono::seconds(15);  // for mode, arming and take-off each
   hal::Duration climb_timeout = std::chrono::seconds(20);
   hal::Duration landing_timeout = std::chrono::seconds(60);
-  hal::Duration pose_allowance = std::chrono::seconds(1);  // a bad pose in the air for so long: land
+  // A bad pose in the air for so long: land. Silence counts as bad after VisionFilterConfig::stale_after, so
+  // landing is asked for 0.7 s after the last pose that can be trusted.
+  hal::Duration pose_allowance = std::chrono::milliseconds(400);
 };
 
 enum class HybridPhase : std::uint8_t {
@@ -92,7 +93,8 @@ struct HybridStatus {
 //            |        |                                         | blocked, a hop can be made| standing; cannot: stopped
 //   standing | locked | feeds localisation to the autopilot     | stands, is where it ought | guided (hop), rolling
 //   guided   | locked | asked for GUIDED once                   | in GUIDED                 | arming; refused: stopped
-//   arming   | locked | asked to arm once                       | armed                     | climbing; refused: stopped
+//   arming   | locked | asked to arm once                       | armed                     | climbing; refused,
+//            |        |                                         |                           | a pilot: stopped
 //   climbing | locked | asked to take off once, then holds      | at the height             | flying; late: stopped
 //   flying   | locked | turns to the landing, flies forward     | over the landing, still   | landing; late: stopped
 //   landing  | locked | asked to land; asks again               | on the ground, disarmed   | standing (next leg), done
@@ -104,7 +106,11 @@ struct HybridStatus {
 // is. The way over an obstacle was planned from its known height: nothing looks at it from the air, and a
 // flight of a few metres is finished rather than broken off over the obstacle - except for a lost pose, a
 // halt or a flight that takes too long: then it lands where it is. A silent autopilot is left to its own
-// fail-safe; a pilot who takes the vehicle keeps it.
+// fail-safe; a pilot who takes the vehicle keeps it. One who takes it while it is being armed gets it
+// disarmed: motors that started on our request must not be a surprise.
+//
+// Safe state: halt() and destruction lock the brakes of a vehicle that rolls, and ask one that is under our
+// command in the air to land, at once.
 //
 // Whoever runs it calls update() at 50 Hz or faster. Allocates only where a leg begins or ends.
 class HybridMode final : public hal::Halt {
@@ -114,8 +120,12 @@ class HybridMode final : public hal::Halt {
              std::vector<HopObstacle> known, hal::Instant now);
 
   void update(hal::Instant now);
-  // Lands or stops at the next update(), and ends.
-  void halt() noexcept override { halt_asked_ = true; }
+  ~HybridMode() override;  // halts
+  HybridMode(const HybridMode&) = delete;
+  HybridMode& operator=(const HybridMode&) = delete;
+
+  // Stops or asks to land at once; ends at the next updates.
+  void halt() noexcept override;
 
   [[nodiscard]] bool done() const { return status_.phase == HybridPhase::done; }
   [[nodiscard]] const HybridStatus& status() const { return status_; }
@@ -144,6 +154,7 @@ class HybridMode final : public hal::Halt {
   [[nodiscard]] bool refused(std::string_view what, hal::Instant now);
   [[nodiscard]] bool waited(hal::Duration allowed, hal::Instant now) const;
   void stop(HybridEnd why, std::string_view detail, hal::Instant now);
+  void give_up_arming(hal::Instant now);
   void give_up_command(HybridEnd why, std::string_view detail, hal::Instant now);
   void set_end(HybridEnd why, std::string_view detail, hal::Instant now);
   void enter(HybridPhase phase, hal::Instant now);

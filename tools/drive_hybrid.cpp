@@ -45,7 +45,9 @@ struct Totals {
     airborne_s += result.airborne_s;
     rolled_m += result.rolled_m;
     flown_m += result.flown_m;
-    if (!good) ++ends[fmt::format("seed {}: {} {}", result.seed, to_string(result.end), result.detail)];
+    if (!good)
+      ++ends[fmt::format("seed {}: {} {}{}", result.seed, to_string(result.end), result.detail,
+                         result.braked_in_air ? "" : ", a brake opened in the air")];
   }
   [[nodiscard]] double mean(double sum) const {
     return sum / static_cast<double>(std::max<std::uint64_t>(runs, 1));

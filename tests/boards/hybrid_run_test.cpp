@@ -60,6 +60,8 @@ TEST(HybridRun, EqualSeedsGiveEqualBytes) {
   ASSERT_TRUE(run_hybrid(scene, {.seed = 3, .journal = &second}));
   EXPECT_EQ(first.hash(), second.hash());
   EXPECT_GT(first.count("hybrid "), 8U);
+  EXPECT_EQ(first.count("moved its world frame"), 0U) << "the way that was rolled is no jump";
+  EXPECT_EQ(first.count("poses jump"), 0U);
 }
 
 TEST(HybridRun, LandsWhenThePoseIsLostInTheAir) {
