@@ -30,6 +30,7 @@ struct Mcp2221Config {
 struct Mcp2221Pin {
   std::uint8_t number = 0;  // 0 to 3: GP0 to GP3
   bool active_low = false;
+  bool keep_at_end = false;  // outputs: the level stays when the object ends; else they end inactive
 };
 
 // An MCP2221A: four pins and an I2C bus at the end of a USB cable, so that a computer without pins can drive
@@ -81,6 +82,7 @@ class Mcp2221 {
     [[nodiscard]] const std::vector<Mcp2221Pin>& pins() const { return pins_; }
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] Mcp2221& bridge() const { return *bridge_; }
+    void end_inactive();  // of outputs, as far as they should and the chip still listens
 
    private:
     Mcp2221* bridge_;

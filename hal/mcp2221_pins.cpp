@@ -35,6 +35,13 @@ Mcp2221::Lease::~Lease() {
   for (const Mcp2221Pin& pin : pins_) bridge_->taken_.at(pin.number) = false;
 }
 
+void Mcp2221::Lease::end_inactive() {
+  const bool keep = bridge_ == nullptr || std::any_of(pins_.begin(), pins_.end(),
+                                                      [](const Mcp2221Pin& pin) { return pin.keep_at_end; });
+  constexpr std::array<bool, kPins> kInactive{};
+  if (!keep) static_cast<void>(bridge_->set_pins(*this, std::span(kInactive).first(pins_.size())));
+}
+
 Result<Mcp2221::Lease> Mcp2221::lease(std::span<const Mcp2221Pin> wanted, bool input) {
   const auto refuse = [&](ErrorCode code, std::string why) {
     return fail(code, name_, "open a pin", std::move(why));
@@ -104,6 +111,9 @@ Result<bool> Mcp2221::pin_active(const Lease& lease) {
 class Mcp2221::Out final : public DigitalOut {
  public:
   explicit Out(Lease lease) : lease_(std::move(lease)) {}
+  ~Out() override { lease_.end_inactive(); }
+  Out(const Out&) = delete;
+  Out& operator=(const Out&) = delete;
 
  private:
   Result<> do_set(bool active) override {
@@ -127,6 +137,9 @@ class Mcp2221::In final : public DigitalIn {
 class Mcp2221::Group final : public DigitalOutGroup {
  public:
   explicit Group(Lease lease) : lease_(std::move(lease)) {}
+  ~Group() override { lease_.end_inactive(); }
+  Group(const Group&) = delete;
+  Group& operator=(const Group&) = delete;
 
  private:
   Result<> do_set(std::span<const bool> active) override { return lease_.bridge().set_pins(lease_, active); }

@@ -161,6 +161,17 @@ TEST_F(Mcp2221Test, AGroupChangesTogether) {
   EXPECT_EQ(ErrorCode::invalid_argument, group->set(std::array{true}).error().code);
 }
 
+TEST_F(Mcp2221Test, OutputsEndInactiveUnlessTheyAreToStay) {
+  auto ends = bridge_->output({.number = 0, .active_low = true}).value();
+  auto stays = bridge_->output({.number = 1, .keep_at_end = true}).value();
+  ASSERT_TRUE(ends->set(true).has_value());
+  ASSERT_TRUE(stays->set(true).has_value());
+  ends.reset();
+  stays.reset();
+  EXPECT_TRUE(chip_.level(0)) << "active low: inactive is high";
+  EXPECT_TRUE(chip_.level(1));
+}
+
 TEST_F(Mcp2221Test, InputsReadWhatDrivesThem) {
   auto in = bridge_->input({.number = 2}).value();
   auto low = bridge_->input({.number = 1, .active_low = true}).value();
