@@ -47,4 +47,9 @@ int complain_not_armed(const std::string& what) {
   return complain_usage("nothing is driven without --arm: " + what);
 }
 
+int complain_signalled(const std::string& name) {
+  fmt::print(stderr, "forager: {}: ended by {} before its time\n", one_line(name), StopSignal::name());
+  return kExitFailure;
+}
+
 }  // namespace forager::tools

@@ -64,5 +64,7 @@ class BenchOutput {
 [[nodiscard]] std::string time_text(hal::Duration time);
 // "nothing is driven without --arm: <what>", on stderr; gives kExitUsage.
 int complain_not_armed(const std::string& what);
+// "<name>: ended by SIGINT before its time", on stderr; gives kExitFailure.
+int complain_signalled(const std::string& name);
 
 }  // namespace forager::tools

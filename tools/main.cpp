@@ -11,13 +11,18 @@
 #include "tools/cmd_bench.hpp"
 #include "tools/cmd_brake.hpp"
 #include "tools/cmd_calibrate.hpp"
+#include "tools/cmd_doctor.hpp"
 #include "tools/cmd_drive.hpp"
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_esc.hpp"
 #include "tools/cmd_generate.hpp"
+#include "tools/cmd_gpio.hpp"
+#include "tools/cmd_i2c.hpp"
+#include "tools/cmd_pwm.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
+#include "tools/cmd_servo.hpp"
 #include "tools/cmd_stress.hpp"
 
 namespace {
@@ -46,6 +51,11 @@ int run_command(int argc, char** argv) {
   add_report_command(app, exit_code);
   add_drive_command(app, exit_code);
   add_emulate_command(app, exit_code);
+  add_doctor_command(app, exit_code);
+  add_gpio_command(app, exit_code);
+  add_pwm_command(app, exit_code);
+  add_i2c_command(app, exit_code);
+  add_servo_command(app, exit_code);
   add_brake_command(app, exit_code);
   add_esc_command(app, exit_code);
   add_bench_command(app, exit_code);

@@ -6,6 +6,7 @@
 #include <sys/sysmacros.h>
 
 #include <cstdarg>
+#include <string>
 
 #include "tests/hal/linux/fake_gpio_kernel.hpp"
 
@@ -18,6 +19,10 @@ template <class Function>
 Function* next(const char* name, Function*) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
+
+// Where a file that is no fake chip is looked for instead: itself, unless a test program says otherwise.
+inline std::string (*redirect)(const char* path) = nullptr;
+inline std::string place_of(const char* path) { return redirect == nullptr ? path : redirect(path); }
 
 }  // namespace forager::hal::fake
 
@@ -62,7 +67,7 @@ int open(const char* path, int flags, ...) {
   auto& gpio = forager::hal::fake::FakeGpio::get();
   if (const int number = gpio.number_of(path); number >= 0) return gpio.open(path, number);
   static auto* const real = forager::hal::fake::next("open", &open);
-  return real(path, flags, mode);
+  return real(forager::hal::fake::place_of(path).c_str(), flags, mode);
 }
 
 int ioctl(int fd, unsigned long request, ...) noexcept {

@@ -155,6 +155,11 @@ class FakeGpio {
     return static_cast<std::uint64_t>((wall.tv_sec - monotonic.tv_sec) * 1'000'000'000 + wall.tv_nsec -
                                       monotonic.tv_nsec);
   }
+  static Instant monotonic_now() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return Instant(std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec));
+  }
   static int spare_descriptor() { return ::dup(STDERR_FILENO); }
   template <std::size_t Size>
   static void copy(char (&into)[Size], const std::string& text) {
@@ -227,7 +232,7 @@ class FakeGpio {
   static bool is_active(const GpioLine& line) {
     return line.level != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
   }
-  static int line_ioctl(Chip& chip, const Handle& handle, unsigned long request, void* argument) {
+  int line_ioctl(Chip& chip, const Handle& handle, unsigned long request, void* argument) {
     auto* v1 = static_cast<gpiohandle_data*>(argument);
     auto* v2 = static_cast<gpio_v2_line_values*>(argument);
     const bool sets = request == GPIOHANDLE_SET_LINE_VALUES_IOCTL || request == GPIO_V2_LINE_SET_VALUES_IOCTL;
@@ -241,6 +246,8 @@ class FakeGpio {
       const std::uint64_t bit = std::uint64_t{1} << i;
       if (is_v2 && (v2->mask & bit) == 0) continue;
       if (sets) put(line, is_v2 ? (v2->bits & bit) != 0 : v1->values[i] != 0);
+      if (sets && line.wired_to >= 0)
+        drive(handle.chip, static_cast<std::size_t>(line.wired_to), line.level, monotonic_now());
       if (!sets && is_v2 && is_active(line)) v2->bits |= bit;
       if (!sets && !is_v2) v1->values[i] = is_active(line) ? 1 : 0;
     }

@@ -17,6 +17,7 @@ struct GpioLine {
   int event_pipe = -1;      // where edges of whoever asked for them go
   bool used = false;
   bool v2_events = false;       // as struct gpio_v2_line_event
+  int wired_to = -1;            // a line of the same chip that takes this one's level when it is set
   std::vector<bool> history{};  // levels that were driven by an output, in order
 };
 

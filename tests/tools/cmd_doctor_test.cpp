@@ -1,0 +1,239 @@
+// `forager doctor` from outside: the six commonest faults, told apart by what it prints. The program is the
+// real one; under it lie a machine with pins (fake_machine) and files of a test's own.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/scratch_folder.hpp"
+#include "tests/tools/fake_machine.hpp"
+#include "tests/tools/program.hpp"
+
+namespace forager::tools {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// The line a check printed, and the mend below it.
+std::string told(const std::string& out, const std::string& check) {
+  std::istringstream in(out);
+  for (std::string line; std::getline(in, line);) {
+    if (line.find(check + ": ") == std::string::npos) continue;
+    std::string mend;
+    std::getline(in, mend);
+    return line + (mend.find("mend: ") != std::string::npos ? "\n" + mend : "");
+  }
+  return {};
+}
+
+class CmdDoctor : public testing::Test {
+ protected:
+  // A board whose reader and autopilot are emulated, so that the rest decides.
+  std::string board(const std::string& devices, const std::string& kind = "sim") {
+    return folder_.write("robot.toml", "[board]\nname = \"robot\"\nkind = \"" + kind + "\"\n" + devices);
+  }
+  ProgramResult examine(const std::string& devices, FakeMachine machine = {}) {
+    return run_program({"doctor", board(devices)}, machine.options());
+  }
+  test::ScratchFolder folder_;
+};
+
+constexpr const char* kButton =
+    "[[gpio]]\nname = \"stop_button\"\nchip = \"pinctrl-bcm2711\"\nline = \"GPIO5\"\n";
+
+TEST_F(CmdDoctor, AHealthyLineIsOkAndTheExitCodeSaysSo) {
+  if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  const ProgramResult result = examine(kButton);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_EQ(told(result.out, "gpio stop_button"),
+            "ok       board    gpio stop_button: line 5 of gpiochip0 (pinctrl-bcm2711) is free");
+  EXPECT_THAT(result.out, AllOf(HasSubstr("host     kernel: "), HasSubstr("backend  libgpiod: "),
+                                HasSubstr("ok       machine  gpio: gpiochip0 (pinctrl-bcm2711), 28 lines\n"),
+                                HasSubstr(" 0 failed\n")));
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(CmdDoctor, NoPermission) {
+  if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  FakeMachine machine{.gpio = "forbidden", .root = folder_.path()};
+  std::filesystem::create_directory(folder_.file("dev"));
+  folder_.write("dev/gpiochip0", "");
+  const ProgramResult result = examine(kButton, machine);
+  EXPECT_EQ(result.exit_code, 4) << result.err;
+  EXPECT_THAT(
+      told(result.out, "gpio stop_button"),
+      AllOf(HasSubstr("failed "), HasSubstr("the operating system forbids it [Permission denied]"),
+            HasSubstr("mend: Install boards/99-forager.rules into /etc/udev/rules.d and join the group gpio; "
+                      "then log in again")));
+}
+
+TEST_F(CmdDoctor, WrongChipName) {
+  if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  const ProgramResult result =
+      examine("[[gpio]]\nname = \"stop_button\"\nchip = \"pinctrl-bcm2835\"\nline = \"GPIO5\"\n");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_EQ(told(result.out, "gpio stop_button"),
+            "failed   board    gpio stop_button: there is no GPIO chip \"pinctrl-bcm2835\"; there are "
+            "pinctrl-bcm2711 (gpiochip0)\n"
+            "                  mend: Write the label of one of them as chip = of the board file");
+}
+
+TEST_F(CmdDoctor, LineBusy) {
+  if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  const ProgramResult result =
+      examine("[[gpio]]\nname = \"lamp\"\nchip = \"gpiochip0\"\nline = \"GPIO22\"\ndirection = \"out\"\n");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_EQ(told(result.out, "gpio lamp"),
+            "failed   board    gpio lamp: gpiochip0/GPIO22: busy, \"spi0 CS1\" holds the line\n"
+            "                  mend: Stop that program, or take the overlay of that driver out");
+}
+
+TEST_F(CmdDoctor, ReaderUnreachable) {
+  if (!built_with("libcurl")) GTEST_SKIP() << "built without libcurl";
+  // Port 1 of this machine: nobody listens there. The autopilot is not there either.
+  const ProgramResult result =
+      run_program({"doctor", board("[reader]\nhost = \"127.0.0.1\"\nrest_port = 1\nstream_port = 1\n"
+                                   "[autopilot]\naddress = \"127.0.0.1:9\"\n",
+                                   "socket")},
+                  FakeMachine{}.options());
+  EXPECT_EQ(result.exit_code, 4);
+  for (const char* check : {"reader", "reader stream"})
+    EXPECT_THAT(told(result.out, check),
+                AllOf(HasSubstr("failed "), HasSubstr("unreachable: "), HasSubstr("127.0.0.1:1"),
+                      HasSubstr("mend: Check the reader's power and network cable, reader.host")));
+  EXPECT_THAT(told(result.out, "autopilot"),
+              AllOf(HasSubstr("failed "), HasSubstr("no heartbeat within 3 s")));
+}
+
+// The far end of a serial line, which talks all the time.
+class Talker {
+ public:
+  explicit Talker(const std::string& text)
+      : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)),
+        text_(text + text + text + text + text + text + text + text) {
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) throw std::runtime_error("no pty");
+    thread_ = std::thread([this] {
+      while (!ended_) {
+        static_cast<void>(!write(master_, text_.data(), text_.size()));
+        std::this_thread::sleep_for(20ms);
+      }
+    });
+  }
+  ~Talker() {
+    ended_ = true;
+    thread_.join();
+    close(master_);
+  }
+  Talker(const Talker&) = delete;
+  Talker& operator=(const Talker&) = delete;
+  [[nodiscard]] std::string port() const { return ptsname(master_); }
+
+ private:
+  int master_;
+  std::string text_;
+  std::atomic<bool> ended_ = false;
+  std::thread thread_;
+};
+
+std::string serial(const std::string& port, const std::string& speaks) {
+  return "[[serial]]\nname = \"telemetry\"\nport = \"" + port + "\"\nbaud = 57600\nspeaks = \"" + speaks +
+         "\"\n";
+}
+
+TEST_F(CmdDoctor, WrongBaud) {
+  const Talker talker("\x80\xf8\x1c\x9e\x03\xe0\xfe\x98");  // text at another rate looks like this
+  for (const char* speaks : {"mavlink", "text"}) {
+    const ProgramResult result = examine(serial(talker.port(), speaks));
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(told(result.out, "serial telemetry"),
+                AllOf(HasSubstr("failed "), HasSubstr("at 57600 8N1: "), HasSubstr("bytes came and make no "),
+                      HasSubstr(": wrong baud rate\n"),
+                      HasSubstr("mend: Set the same baud rate and parity at both ends")));
+  }
+}
+
+TEST_F(CmdDoctor, ALineThatMakesSenseIsOkAndASilentOneIsNot) {
+  {
+    const Talker talker("EPC 3005FB63AC1F3841EC880467\r\n");
+    const ProgramResult result = examine(serial(talker.port(), "text"));
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+    EXPECT_THAT(told(result.out, "serial telemetry"), HasSubstr("at 57600 8N1: text is heard"));
+  }
+  const Talker silent("");
+  const ProgramResult result = examine(serial(silent.port(), "mavlink"));
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(told(result.out, "serial telemetry"),
+              AllOf(HasSubstr("not one byte in 1.5 s"), Not(HasSubstr("baud rate"))));
+}
+
+TEST_F(CmdDoctor, DeviceUnplugged) {
+  const ProgramResult result = examine(serial("/dev/ttyUSB77", "mavlink"));
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(told(result.out, "serial telemetry"),
+              AllOf(HasSubstr("failed "), HasSubstr("/dev/ttyUSB77"), HasSubstr("No such file or directory"),
+                    HasSubstr("mend: ")));
+}
+
+TEST_F(CmdDoctor, JsonHasEveryCheckAndASummary) {
+  const ProgramResult result = run_program({"doctor", "--json", board(kButton)}, FakeMachine{}.options());
+  EXPECT_EQ(result.exit_code, 0);
+  std::istringstream in(result.out);
+  nlohmann::json last;
+  int checks = 0;
+  for (std::string line; std::getline(in, line);) {
+    last = nlohmann::json::parse(line);
+    checks += last["event"] == "check" ? 1 : 0;
+  }
+  EXPECT_EQ(last["event"], "summary");
+  EXPECT_EQ(checks, last["ok"].get<int>() + last["warned"].get<int>() + last["skipped"].get<int>() +
+                        last["failed"].get<int>());
+}
+
+TEST_F(CmdDoctor, AMistakeInTheBoardIsUsage) {
+  const ProgramResult result =
+      run_program({"doctor", board("[[gpio]]\nname = \"a\"\nchip = \"b\"\nlin = \"c\"\n")});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("robot.toml"));
+  EXPECT_EQ(run_program({"doctor", "/nowhere/board.toml"}).exit_code, 3);
+}
+
+TEST_F(CmdDoctor, APiThatStarvesIsToldSo) {
+  FakeMachine machine{.root = folder_.path()};
+  std::filesystem::create_directories(folder_.file("proc/device-tree"));
+  std::filesystem::create_directories(folder_.file("sys/devices/platform/soc/soc:firmware"));
+  std::filesystem::create_directories(folder_.file("sys/bus/hid/devices/0003:04D8:00DD.0001"));
+  std::filesystem::create_directories(folder_.file("sys/bus/hid/drivers/mcp2221"));
+  std::filesystem::create_directories(folder_.file("sys/kernel"));
+  std::filesystem::create_symlink("../../drivers/mcp2221",
+                                  folder_.file("sys/bus/hid/devices/0003:04D8:00DD.0001/driver"));
+  folder_.write("proc/device-tree/model", "Raspberry Pi 4 Model B Rev 1.4");
+  folder_.write("sys/devices/platform/soc/soc:firmware/get_throttled", "50005\n");
+  folder_.write("sys/kernel/realtime", "1\n");
+  const ProgramResult result = run_program({"doctor"}, machine.options());
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(
+      told(result.out, "supply"),
+      AllOf(HasSubstr("failed   host     supply: right now: under-voltage, throttled"), HasSubstr("5.1 V")));
+  EXPECT_THAT(told(result.out, "real time"),
+              HasSubstr("ok       host     real time: the kernel is PREEMPT_RT"));
+  EXPECT_THAT(
+      told(result.out, "mcp2221"),
+      AllOf(HasSubstr("failed   machine  mcp2221: the kernel's driver hid-mcp2221 holds the USB bridge"),
+            HasSubstr("blacklist hid_mcp2221")));
+}
+
+}  // namespace
+}  // namespace forager::tools
