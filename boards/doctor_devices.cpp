@@ -153,7 +153,9 @@ void check_brake_line(const Doctor& doctor, const std::string& side, const Brake
 
 void check_motors(const Doctor& doctor, const EscBoard& esc) {
   for (const EscMotor& motor : esc.motors) {
-    PwmPlace place{.chip = esc.chip, .bus = esc.bus, .address = esc.address, .channel = motor.channel};
+    PwmPlace place;
+    place.chip = esc.chip;
+    place.channel = motor.channel;
     if (esc.output == EscOutput::emulated) place.backend = PwmBackend::sim;
     check_output(doctor, "esc " + motor.name, place);
   }
