@@ -124,7 +124,12 @@ Result<> Channel::adopt(const SysfsPwmConfig& config) {
   const auto enabled = get("enable");
   if (!enabled) return fail(enabled.error());
   enabled_ = *enabled != 0;
-  if (!enabled_) {  // polarity only changes while nothing runs
+  const auto duty = get("duty_cycle");
+  if (!duty) return fail(duty.error());
+  const Duration running = std::min(Duration(*duty), config.period);
+  if (running < Duration(*duty)) FORAGER_TRY(put("duty_cycle", running.count(), "open"));
+  FORAGER_TRY(set_period(config.period, "open"));
+  if (!enabled_) {  // polarity changes while nothing runs, and not before there is a period
     const auto polarity =
         write_file(group_->kernel(), folder_ + "/polarity", config.inverted ? "inversed" : "normal");
     const ErrorCode code = polarity ? ErrorCode::io : polarity.error().code;
@@ -132,11 +137,6 @@ Result<> Channel::adopt(const SysfsPwmConfig& config) {
                                           code != ErrorCode::unsupported && code != ErrorCode::not_present)))
       return told(polarity.error(), name_, "set polarity");
   }
-  const auto duty = get("duty_cycle");
-  if (!duty) return fail(duty.error());
-  const Duration running = std::min(Duration(*duty), config.period);
-  if (running < Duration(*duty)) FORAGER_TRY(put("duty_cycle", running.count(), "open"));
-  FORAGER_TRY(set_period(config.period, "open"));
   if (enabled_) pulse_ = running;
   return {};
 }

@@ -217,6 +217,7 @@ class FakePwmChip {
         [this, &line](std::string_view text) -> long {
           if (text != "normal" && text != "inversed") return -EINVAL;
           if (line.enabled) return -EBUSY;
+          if (line.period == 0) return -EINVAL;  // as Linux up to 6.1 at least, for a channel never used
           if (text == "inversed" && !can_invert) return -EINVAL;
           line.inversed = text == "inversed";
           return 0;
