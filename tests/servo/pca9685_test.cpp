@@ -8,7 +8,7 @@
 #include "mocks/sim_i2c_bus.hpp"
 #include "mocks/sim_pca9685.hpp"
 #include "mocks/text_journal.hpp"
-#include "tests/hal/pwm_contract.hpp"
+#include "tests/servo/pca9685_rig.hpp"
 
 namespace forager::servo {
 namespace {
@@ -228,32 +228,13 @@ TEST(SimPca9685, RefusesWhatTheDataSheetReserves) {
   EXPECT_EQ(6U, sim.violations().size());
 }
 
-class ChipRig final : public hal::contract::PwmRig {
+// The buses are a base: they are there before the driver, and after it.
+struct OneBus {
+  mocks::SimI2cBus bus{"i2c"};
+};
+class ChipRig final : OneBus, public Pca9685Rig {
  public:
-  ChipRig() {
-    bus_.attach(0x40, sim_);
-    EXPECT_TRUE(chip_.open(now_));
-  }
-  hal::PwmGroup& group() override { return chip_; }
-  hal::PwmChannel& channel(std::size_t index) override { return chip_.channel(index); }
-  std::optional<hal::Duration> pulse_at_pin(std::size_t index) override { return sim_.pulse(index); }
-  hal::Duration period_at_pin() override { return sim_.period(); }
-  hal::Duration rounding() override { return 2441ns; }
-  void settle() override {
-    for (int i = 0; i < 3; ++i) {
-      now_ += 1ms;
-      sim_.advance(now_);
-      EXPECT_TRUE(chip_.update(now_));
-    }
-  }
-  void unplug(bool out) override { bus_.disconnect(out); }
-
- private:
-  hal::Instant now_{1s};
-  hal::NullJournal journal_;
-  mocks::SimI2cBus bus_{"i2c"};
-  mocks::SimPca9685 sim_;
-  Pca9685 chip_{bus_, nullptr, journal_, {}};
+  ChipRig() : Pca9685Rig(bus, bus) {}
 };
 
 }  // namespace
