@@ -73,6 +73,10 @@ void read_charger(ConfigReader& table, ModbusDevice& device) {
   device.charging_bit = bit("charging_bit", device.charging_bit);
   device.fault_bit = bit("fault_bit", device.fault_bit);
   want(table, device, "status");
+  const ModbusRegister* status = device.find("status");
+  if (status != nullptr &&
+      (status->type != RegisterType::u16 || status->scale != 1.0 || status->offset != 0.0))
+    table.complain("register", "\"status\" of a charger must be a plain u16", "Its bits are what counts.");
 }
 
 ModbusDevice read_device(ConfigReader& table) {

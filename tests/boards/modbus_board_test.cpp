@@ -104,6 +104,7 @@ TEST_F(ModbusBoardTest, MistakesAreNamedWithTheirPlace) {
   EXPECT_THAT(complaint("address = 20", "address = 65535"), HasSubstr("make no register"));
   EXPECT_THAT(complaint("name = \"dock\"", "name = \"battery\""), HasSubstr("stands twice"));
   EXPECT_THAT(complaint("unit = 5", "unit = 300"), HasSubstr("unit"));
+  EXPECT_THAT(complaint("name = \"status\"", "name = \"status\"\nscale = 2"), HasSubstr("plain u16"));
   EXPECT_THAT(complaint("bus = \"sim\"", "port = \"sim\""), HasSubstr("bus"));
 }
 
