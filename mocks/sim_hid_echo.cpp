@@ -43,17 +43,8 @@ void SimHidEcho::power(bool) {
 
 bool SimHidEcho::output(std::span<const std::byte> report) {
   if (report.size() != kReport + 1 || report[0] != std::byte{0}) return false;
-  reports_.emplace_back(report.begin() + 1, report.end());
+  reports_.push(report.subspan(1));
   return true;
-}
-
-std::size_t SimHidEcho::input(std::span<std::byte> into) {
-  if (reports_.empty()) return 0;
-  const std::vector<std::byte> report = std::move(reports_.front());
-  reports_.pop_front();
-  const std::size_t count = std::min(into.size(), report.size());
-  std::copy_n(report.begin(), count, into.begin());
-  return count;
 }
 
 std::optional<std::size_t> SimHidEcho::get_feature(std::span<std::byte> into) {

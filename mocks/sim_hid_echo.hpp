@@ -1,9 +1,9 @@
 #pragma once
 
-#include <deque>
 #include <string>
 #include <vector>
 
+#include "mocks/report_queue.hpp"
 #include "mocks/sim_hid_device.hpp"
 
 namespace forager::mocks {
@@ -18,14 +18,14 @@ class SimHidEcho final : public SimHidDevice {
   [[nodiscard]] const hal::HidDeviceFacts& facts() const override { return facts_; }
   [[nodiscard]] std::span<const std::uint8_t> report_descriptor() const override;
   bool output(std::span<const std::byte> report) override;
-  std::size_t input(std::span<std::byte> into) override;
+  std::size_t input(std::span<std::byte> into) override { return reports_.take(into); }
   std::optional<std::size_t> get_feature(std::span<std::byte> into) override;
   bool set_feature(std::span<const std::byte> report) override;
   void power(bool on) override;
 
  private:
   hal::HidDeviceFacts facts_;
-  std::deque<std::vector<std::byte>> reports_;
+  ReportQueue reports_;
   std::vector<std::byte> feature_;
 };
 

@@ -109,17 +109,8 @@ bool SimMcp2221::output(std::span<const std::byte> report) {
       answer[1] = std::byte{kBusyOrUnknown};
       violation(fmt::format("command 0x{:02x} is not declared", byte_at(request, 0)));
   }
-  answers_.push_back(answer);
+  answers_.push(answer);
   return true;
-}
-
-std::size_t SimMcp2221::input(std::span<std::byte> into) {
-  if (answers_.empty()) return 0;
-  const Report report = answers_.front();
-  answers_.pop_front();
-  const std::size_t count = std::min(into.size(), report.size());
-  std::copy_n(report.begin(), count, into.begin());
-  return count;
 }
 
 void SimMcp2221::status(const Report& request, Report& answer) {

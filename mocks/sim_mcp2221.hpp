@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <vector>
 
 #include "hal/i2c.hpp"
 #include "hal/mcp2221_wire.hpp"
+#include "mocks/report_queue.hpp"
 #include "mocks/sim_hid_device.hpp"
 
 namespace forager::mocks {
@@ -24,7 +24,7 @@ class SimMcp2221 final : public SimHidDevice {
   [[nodiscard]] const hal::HidDeviceFacts& facts() const override { return facts_; }
   [[nodiscard]] std::span<const std::uint8_t> report_descriptor() const override;
   bool output(std::span<const std::byte> report) override;
-  std::size_t input(std::span<std::byte> into) override;
+  std::size_t input(std::span<std::byte> into) override { return answers_.take(into); }
   std::optional<std::size_t> get_feature(std::span<std::byte>) override { return std::nullopt; }
   bool set_feature(std::span<const std::byte>) override { return false; }
   void power(bool on) override;
@@ -59,7 +59,7 @@ class SimMcp2221 final : public SimHidDevice {
 
   hal::I2c* bus_;
   hal::HidDeviceFacts facts_;
-  std::deque<Report> answers_;
+  ReportQueue answers_;
   std::array<std::uint8_t, hal::mcp2221::kPins> pins_{};  // as in SRAM, with the level last set
   std::array<bool, hal::mcp2221::kPins> outside_{};
   std::uint8_t divider_ = 0;

@@ -1,6 +1,7 @@
 #include "mocks/sim_wedge.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace forager::mocks {
 namespace {
@@ -66,15 +67,6 @@ bool SimWedge::output(std::span<const std::byte> report) {
   return true;
 }
 
-std::size_t SimWedge::input(std::span<std::byte> into) {
-  if (reports_.empty()) return 0;
-  const std::vector<std::byte> report = std::move(reports_.front());
-  reports_.pop_front();
-  const std::size_t count = std::min(into.size(), report.size());
-  std::copy_n(report.begin(), count, into.begin());
-  return count;
-}
-
 void SimWedge::type(std::string_view text) {
   for (char letter : text) {
     if (config_.capitals && letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
@@ -83,11 +75,11 @@ void SimWedge::type(std::string_view text) {
       untyped_ += letter;
       continue;
     }
-    std::vector<std::byte> down(kReport);
-    down[0] = key.shift ? kLeftShift : std::byte{0};
-    down[2] = std::byte{key.usage};
-    reports_.push_back(std::move(down));
-    reports_.emplace_back(kReport);
+    std::array<std::byte, kReport> keys{};
+    keys[0] = key.shift ? kLeftShift : std::byte{0};
+    keys[2] = std::byte{key.usage};
+    reports_.push(keys);
+    reports_.push(std::array<std::byte, kReport>{});
   }
 }
 

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
+#include "mocks/report_queue.hpp"
 #include "mocks/sim_hid_device.hpp"
 
 namespace forager::mocks {
@@ -31,7 +29,7 @@ class SimWedge final : public SimHidDevice {
   [[nodiscard]] const hal::HidDeviceFacts& facts() const override { return facts_; }
   [[nodiscard]] std::span<const std::uint8_t> report_descriptor() const override;
   bool output(std::span<const std::byte> report) override;
-  std::size_t input(std::span<std::byte> into) override;
+  std::size_t input(std::span<std::byte> into) override { return reports_.take(into); }
   std::optional<std::size_t> get_feature(std::span<std::byte>) override { return std::nullopt; }
   bool set_feature(std::span<const std::byte>) override { return false; }
   void power(bool on) override;
@@ -40,14 +38,14 @@ class SimWedge final : public SimHidDevice {
   void read_tag(std::string_view epc_hex) { type(std::string(epc_hex) + config_.end); }
   void type(std::string_view text);
   // A report as it is, for what no keyboard should send.
-  void send(std::vector<std::byte> report) { reports_.push_back(std::move(report)); }
+  void send(std::span<const std::byte> report) { reports_.push(report); }
   [[nodiscard]] const std::string& untyped() const { return untyped_; }
   [[nodiscard]] std::uint8_t lamps() const { return lamps_; }
 
  private:
   SimWedgeConfig config_;
   hal::HidDeviceFacts facts_;
-  std::deque<std::vector<std::byte>> reports_;
+  ReportQueue reports_;
   std::string untyped_;
   std::uint8_t lamps_ = 0;
 };
