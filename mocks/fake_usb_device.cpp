@@ -157,7 +157,7 @@ hal::Result<> FakeUsbDevice::do_clear_halt(const hal::UsbEndpointFacts& endpoint
 hal::Result<> FakeUsbDevice::do_start(const hal::UsbEndpointFacts& endpoint,
                                       const hal::UsbPipeConfig& config) {
   FORAGER_TRY(admit("start a pipe"));
-  pipes_[endpoint.address].emplace().config = config;
+  pipes_[endpoint.address].emplace(config);
   return {};
 }
 

@@ -22,6 +22,7 @@ class FakeUsbDevice final : public hal::UsbDevice {
     std::size_t done = 0;
   };
   struct Pipe {
+    explicit Pipe(const hal::UsbPipeConfig& how) : config(how) {}
     hal::UsbPipeConfig config;
     std::deque<Transfer> ended;  // to the host
     std::optional<Transfer> filling;
