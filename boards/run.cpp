@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "boards/policies.hpp"
+#include "boards/recorded_devices.hpp"
 #include "boards/robot_config.hpp"
 #include "boards/world_builder.hpp"
 #include "flight/mavlink_autopilot.hpp"
@@ -210,23 +211,31 @@ hal::Result<std::unique_ptr<reader::InventoryStore>> open_store(const RunOptions
 hal::Result<std::unique_ptr<Run>> Run::prepare(const Scene& scene, const Board& board,
                                                const RunOptions& options, hal::Instant now) {
   FORAGER_TRY(validate(scene.read_plan));
-  FORAGER_TRY(validate(advannet_config(scene, board)));
   auto devices = make_devices(scene, board,
                               {.seed = options.seed,
                                .journal = options.journal,
                                .journal_wire = options.journal_wire,
                                .counter = options.counter});
   if (!devices) return hal::fail(std::move(devices).error());
+  if (options.recording != nullptr) devices = record_devices(*std::move(devices), *options.recording, now);
+  return prepare_with(scene, board, options, now, *std::move(devices));
+}
+
+hal::Result<std::unique_ptr<Run>> Run::prepare_with(const Scene& scene, const Board& board,
+                                                    const RunOptions& options, hal::Instant now,
+                                                    std::unique_ptr<DeviceSet> devices) {
+  FORAGER_TRY(validate(scene.read_plan));
+  FORAGER_TRY(validate(advannet_config(scene, board)));
   auto motors = flight::MotorBay().claim("autopilot");
   if (!motors) return hal::fail(std::move(motors).error());
   auto autopilot =
-      flight::MavlinkAutopilot::create((*devices)->autopilot(), journal_of(options),
+      flight::MavlinkAutopilot::create(devices->autopilot(), journal_of(options),
                                        mavlink_config(scene, options.journal_wire), now, std::move(*motors));
   if (!autopilot) return hal::fail(std::move(autopilot).error());
   auto store = open_store(options);
   if (!store) return hal::fail(std::move(store).error());
   note_plan(scene.read_plan, journal_of(options), now);
-  return std::make_unique<Mission>(scene, board, options, std::move(*devices), std::move(*autopilot),
+  return std::make_unique<Mission>(scene, board, options, std::move(devices), std::move(*autopilot),
                                    std::move(*store), journal_of(options), now);
 }
 

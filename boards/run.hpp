@@ -9,6 +9,7 @@
 
 #include "boards/board.hpp"
 #include "boards/device_set.hpp"
+#include "boards/recorded_devices.hpp"
 #include "boards/run_summary.hpp"
 #include "boards/scene.hpp"
 #include "flight/mission_status.hpp"
@@ -22,10 +23,11 @@ namespace forager::boards {
 
 struct RunOptions {
   std::uint64_t seed = 1;
-  std::string inventory_path;  // SQLite file; empty: kept in memory
+  std::string inventory_path{};  // SQLite file; empty: kept in memory
   hal::Journal* journal = nullptr;
   bool journal_wire = false;  // bytes of both links and of the emulators' streams too
   TickCounter counter = nullptr;
+  const RunRecording* recording = nullptr;  // takes down what passes between drivers and devices
 };
 
 // Ticks of RunOptions::counter spent where.
@@ -44,6 +46,11 @@ class Run {
   // unsupported.
   [[nodiscard]] static hal::Result<std::unique_ptr<Run>> prepare(const Scene& scene, const Board& board,
                                                                  const RunOptions& options, hal::Instant now);
+  // The same with devices that are there already.
+  [[nodiscard]] static hal::Result<std::unique_ptr<Run>> prepare_with(const Scene& scene, const Board& board,
+                                                                      const RunOptions& options,
+                                                                      hal::Instant now,
+                                                                      std::unique_ptr<DeviceSet> devices);
   // A run that is not done is abandoned.
   virtual ~Run() = default;
 

@@ -31,6 +31,8 @@ class Replay {
   // look, so that none is missed; before the first one that.
   [[nodiscard]] hal::Result<hal::Fields> held(std::string_view device, std::string_view operation);
 
+  // The first call that was another one than recorded; drivers may go on after it.
+  [[nodiscard]] const std::optional<hal::Error>& difference() const { return difference_; }
   // Calls that nobody has made yet.
   [[nodiscard]] std::size_t calls_left() const;
   // Time of the replay from time of the recording.
@@ -50,6 +52,7 @@ class Replay {
   std::vector<hal::Record> records_;
   const hal::Clock* clock_;
   hal::Duration shift_{};
+  std::optional<hal::Error> difference_;
   std::map<std::pair<std::string, std::string>, Queue, std::less<>> queues_;  // calls: no operation
 };
 

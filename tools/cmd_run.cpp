@@ -6,9 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <system_error>
 
+#include "boards/replay_run.hpp"
 #include "boards/run.hpp"
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
@@ -152,6 +154,30 @@ int close_run(Run& run, const RunCommand& command, const Files& files, const Run
   return exit_code;
 }
 
+// The file of --record. Never fails towards the run; whether all of it was written is asked at the end.
+class RecordFile {
+ public:
+  explicit RecordFile(const RunCommand& command) : path_(command.record) {
+    if (path_.empty()) return;
+    file_.open(path_, std::ios::binary | std::ios::trunc);
+    recording_ = {[this](std::string_view line) { file_ << line; },
+                  fields_of(boards::RecordedRun{command.scene, command.policy, command.board, command.seed})};
+  }
+  [[nodiscard]] const boards::RunRecording* recording() const {
+    return path_.empty() ? nullptr : &recording_;
+  }
+  [[nodiscard]] hal::Result<> check() {
+    if (path_.empty() || file_.flush()) return {};
+    return hal::fail(hal::ErrorCode::io, path_, "write recording", "cannot be written",
+                     "Choose another file with --record, and see whether the disk is full.");
+  }
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+  boards::RunRecording recording_;
+};
+
 }  // namespace
 
 int run_run_command(const RunCommand& command) {
@@ -172,11 +198,17 @@ int run_run_command(const RunCommand& command) {
 
   const bool real = command.real_time || command.speed != 1.0 || board->kind != boards::BoardKind::sim;
   const auto clock = real ? boards::make_real_clock(command.speed) : boards::make_virtual_clock();
+  RecordFile record(command);
+  if (const auto opened = record.check(); !opened) {
+    remove_files(*files);
+    return complain(opened.error());
+  }
   auto run = Run::prepare(*scene, *board,
                           {.seed = command.seed,
                            .inventory_path = files->inventory,
                            .journal = journal->get(),
-                           .journal_wire = command.wire},
+                           .journal_wire = command.wire,
+                           .recording = record.recording()},
                           clock->now());
   if (!run) {
     remove_files(*files);
@@ -190,6 +222,7 @@ int run_run_command(const RunCommand& command) {
   if (!(*journal)->flush())
     exit_code = complain(
         {hal::ErrorCode::io, files->journal, "write journal", "cannot be written", "Is the disk full?", 0});
+  if (const auto written = record.check(); !written) exit_code = complain(written.error());
   return flown ? exit_code : complain(flown.error());
 }
 
@@ -211,6 +244,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   sub->add_flag("--json", command->json, "JSON lines on stdout; the last one is the summary");
   sub->add_flag("--quiet", command->quiet, "No progress line");
   sub->add_flag("--wire", command->wire, "Bytes of both links into the journal too");
+  sub->add_option("--record", command->record,
+                  "File for what passes between drivers and devices; see replay");
   sub->callback([command, &exit_code] { exit_code = run_run_command(*command); });
 }
 

@@ -15,6 +15,7 @@ struct RunCommand {
   std::string policy;  // empty: the scene's
   std::string
       output;  // folder for report.html, inventory.sqlite and journal.txt; empty: out/<scene>-<policy>-<seed>
+  std::string record;  // file that takes down what passes between drivers and devices; empty: none
   std::uint64_t seed = 1;
   double speed = 1.0;  // of real time
   bool real_time = false;

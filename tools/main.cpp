@@ -19,6 +19,7 @@
 #include "tools/cmd_gpio.hpp"
 #include "tools/cmd_i2c.hpp"
 #include "tools/cmd_pwm.hpp"
+#include "tools/cmd_replay.hpp"
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
@@ -49,6 +50,7 @@ int run_command(int argc, char** argv) {
   int exit_code = kExitDone;
   add_run_command(app, exit_code);
   add_report_command(app, exit_code);
+  add_replay_command(app, exit_code);
   add_drive_command(app, exit_code);
   add_emulate_command(app, exit_code);
   add_doctor_command(app, exit_code);
