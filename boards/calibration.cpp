@@ -84,6 +84,25 @@ std::vector<CalibrationResidual> residuals_of(const CalibrationCells& cells,
   return out;
 }
 
+std::vector<MisplacedTag> misplaced_of(const Recording& recording, const CalibrationCells& cells) {
+  std::vector<MisplacedTag> out;
+  for (const std::uint32_t tag : cells.misplaced) {
+    MisplacedTag found{recording.tags[tag].epc, recording.tags[tag].position, {}, 0};
+    double strongest_dbm = -std::numeric_limits<double>::infinity();
+    for (const Recording::Read& read : recording.reads) {
+      if (read.tag != tag) continue;
+      ++found.reads;
+      if (read.rssi_dbm <= strongest_dbm) continue;
+      strongest_dbm = read.rssi_dbm;
+      const auto after = std::lower_bound(recording.poses.begin(), recording.poses.end(), read.time_s,
+                                          [](const auto& p, double t) { return p.time_s < t; });
+      found.heard_from = (after == recording.poses.end() ? recording.poses.back() : *after).pose.position;
+    }
+    out.push_back(std::move(found));
+  }
+  return out;
+}
+
 }  // namespace
 
 hal::Result<Calibration> calibrate(const Recording& recording, const Scene& scene,
@@ -123,6 +142,7 @@ hal::Result<Calibration> calibrate(const Recording& recording, const Scene& scen
     result.parameters.push_back(std::move(p));
   }
   result.residuals = residuals_of(cells, likelihood, parameters_at(best.at));
+  result.misplaced = misplaced_of(recording, cells);
   result.log_likelihood = best.log_likelihood;
   result.evaluations = fitter.evaluations();
   result.tags = recording.tags.size();

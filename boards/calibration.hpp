@@ -35,8 +35,17 @@ struct CalibrationResidual {
   double standardised = 0.0;  // (seen - expected) / sqrt(variance); sensitivity and fade widen it
 };
 
+// A tag that was heard mostly from where its listed place is out of reach. It is left out of the fit.
+struct MisplacedTag {
+  std::string epc;
+  hal::Vec3 listed;
+  hal::Vec3 heard_from;  // the vehicle at the strongest read
+  std::uint64_t reads = 0;
+};
+
 struct Calibration {
   std::vector<FittedParameter> parameters;
+  std::vector<MisplacedTag> misplaced;
   std::vector<CalibrationResidual> residuals;
   double log_likelihood = 0.0;
   int evaluations = 0;
@@ -72,7 +81,8 @@ struct CalibrationOptions {
 
 // A simulated recording: the scene's vehicle is carried along its waypoints at its mission's speed, back and
 // forth (or hovers, without waypoints) for `seconds`, and everything its reader hears is written down. The
-// vehicle and its camera take no part. Deterministic by seed.
+// vehicle and its camera take no part. Its tags are where the scene lists them; reads of those it does not
+// list are counted as strangers and left out. Deterministic by seed.
 [[nodiscard]] hal::Result<Recording> simulate_recording(const Scene& scene, std::uint64_t seed,
                                                         double seconds);
 

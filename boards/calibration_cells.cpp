@@ -18,6 +18,10 @@ namespace {
 // Beyond this many times the 95 % point of what was heard nothing is looked at: nobody hears anything there,
 // and saying so tells nothing.
 constexpr double kFarShare = 1.4;
+// Heard from so many times the median range: no measure for others.
+constexpr double kWildShare = 3.0;
+// Fewer slices do not tell that a tag is not where it is listed.
+constexpr std::size_t kFewestToJudge = 3;
 
 struct Slice {
   std::size_t stop = 0;
@@ -39,6 +43,7 @@ class Slicer {
     for (const reader::ReadPort& port : scene.read_plan.ports) {
       ports_.push_back(port.port);
       bearings_.push_back(port.bearing_rad);
+      sensitivity_dbm_.push_back(port.sensitivity_dbm.value_or(scene.read_plan.sensitivity_dbm));
     }
     const double length_s = recording.poses.back().time_s - recording.poses.front().time_s;
     slices_.resize(std::max<std::size_t>(1, static_cast<std::size_t>(length_s / slicing.slice_s)));
@@ -48,6 +53,8 @@ class Slicer {
     find_stops();
     share_time();
     mark_seen();
+    judge_places();
+    find_strength();
     CalibrationCells cells;
     cells.tag_begin.push_back(0);
     for (std::size_t tag = 0; tag < recording_.tags.size(); ++tag) append_tag(cells, tag);
@@ -142,15 +149,66 @@ class Slicer {
     }
     std::sort(seen_.begin(), seen_.end());
     seen_.erase(std::unique(seen_.begin(), seen_.end()), seen_.end());
-    heard_m_.reserve(seen_.size());
-    for (const std::uint64_t key : seen_) {
-      const std::size_t slice = key % slices_.size();
-      const std::size_t port = key / slices_.size() % ports_.size();
-      const double range = range_m(key / slices_.size() / ports_.size(), port, slices_[slice].stop);
-      if (std::isfinite(range)) heard_m_.push_back(range);
+  }
+
+  // How far tags are heard, and which of them cannot be where they are listed.
+  void judge_places() {
+    std::vector<double> ranges;
+    for (const std::uint64_t key : seen_) ranges.push_back(range_of(key));
+    const double reach_m = reach_of(ranges);
+    misplaced_.assign(recording_.tags.size(), false);
+    for (std::size_t i = 0; i < seen_.size();) {
+      const std::size_t tag = seen_[i] / slices_.size() / ports_.size();
+      std::size_t slices = 0;
+      std::size_t beyond = 0;
+      for (; i < seen_.size() && seen_[i] / slices_.size() / ports_.size() == tag; ++i, ++slices)
+        if (ranges[i] > reach_m) ++beyond;
+      misplaced_[tag] = slices >= kFewestToJudge && 2 * beyond > slices;
     }
-    far_m_ =
-        heard_m_.empty() ? std::numeric_limits<double>::infinity() : kFarShare * quantile(heard_m_, 0.95);
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      if (!misplaced_[seen_[i] / slices_.size() / ports_.size()] && std::isfinite(ranges[i]))
+        heard_m_.push_back(ranges[i]);
+    far_m_ = reach_of(heard_m_);
+  }
+
+  // Beyond what all but a few are heard from; what is far out of line (a tag that stands elsewhere) has no
+  // say.
+  static double reach_of(const std::vector<double>& ranges) {
+    std::vector<double> finite;
+    for (const double range : ranges)
+      if (std::isfinite(range)) finite.push_back(range);
+    if (finite.empty()) return std::numeric_limits<double>::infinity();
+    const double wild_m = kWildShare * quantile(finite, 0.5);
+    std::erase_if(finite, [&](double range) { return range > wild_m; });
+    return kFarShare * quantile(finite, 0.95);
+  }
+
+  // Strength of replies at 1 m on boresight, by what was heard from near; distance and pattern go twice.
+  void find_strength() {
+    std::vector<double> at_1m;
+    const double near_m = quantile(heard_m_, 0.5);
+    for (const Recording::Read& read : recording_.reads) {
+      const std::size_t slice = slice_at(read.time_s);
+      const std::size_t port = port_place(read.port);
+      if (slice >= slices_.size() || port >= ports_.size() || misplaced_[read.tag]) continue;
+      if (range_m(read.tag, port, slices_[slice].stop) > near_m) continue;
+      at_1m.push_back(read.rssi_dbm - path_db(read.tag, port, slices_[slice].stop));
+    }
+    if (!at_1m.empty()) at_1m_dbm_ = quantile(at_1m, 0.5);
+  }
+
+  // Both ways through distance and pattern.
+  [[nodiscard]] double path_db(std::size_t tag, std::size_t port, std::size_t stop) const {
+    const hal::Pose& pose = stops_[stop].pose;
+    const hal::Vec3 offset = recording_.tags[tag].position - pose.position;
+    const double power = air_.pattern.power(hal::rotate_yaw(offset, -pose.yaw_rad - bearings_[port]));
+    return 20.0 * std::log10(power) - 40.0 * std::log10(std::max(norm(offset), 0.05));
+  }
+
+  [[nodiscard]] double range_of(std::uint64_t key) const {
+    const std::size_t slice = key % slices_.size();
+    const std::size_t port = key / slices_.size() % ports_.size();
+    return range_m(key / slices_.size() / ports_.size(), port, slices_[slice].stop);
   }
 
   [[nodiscard]] double range_m(std::size_t tag, std::size_t port, std::size_t stop) const {
@@ -162,13 +220,16 @@ class Slicer {
   }
 
   void append_tag(CalibrationCells& cells, std::size_t tag) {
-    for (std::size_t port = 0; port < ports_.size(); ++port) {
+    if (misplaced_[tag]) cells.misplaced.push_back(static_cast<std::uint32_t>(tag));
+    for (std::size_t port = 0; port < ports_.size() && !misplaced_[tag]; ++port) {
       bool open = false;
       std::size_t cell = 0;
       for (const std::size_t at : by_cell_) {
         const Stop& stop = stops_[at];
         const double range = range_m(tag, port, at);
-        if (!(range <= far_m_)) continue;
+        if (!(range <= far_m_) ||
+            at_1m_dbm_ + path_db(tag, port, at) < sensitivity_dbm_[port] + slicing_.above_sensitivity_db)
+          continue;
         if (!open || stop.cell != cell) cells.cell_begin.push_back(cells.bins.size());
         open = true;
         cell = stop.cell;
@@ -219,7 +280,10 @@ class Slicer {
   std::vector<std::size_t> by_cell_;
   std::vector<std::uint64_t> seen_;
   std::vector<double> heard_m_;
+  std::vector<bool> misplaced_;
+  std::vector<double> sensitivity_dbm_;
   double far_m_ = 0.0;
+  double at_1m_dbm_ = std::numeric_limits<double>::infinity();
   std::uint64_t reads_ = 0;
 };
 

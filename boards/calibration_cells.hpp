@@ -31,7 +31,10 @@ struct CalibrationCells {
   double nearest_m = 0.0;  // 5 and 95 % points of the ranges of what was heard
   double farthest_m = 0.0;
   std::uint64_t reads = 0;  // taken in; those without a pose are not
-  double moved_m = 0.0;     // largest distance between two places
+  // Tags (indices) that were heard, but mostly from where their listed place is out of reach; they have no
+  // bins.
+  std::vector<std::uint32_t> misplaced;
+  double moved_m = 0.0;  // largest distance between two places
 };
 
 // How long the radio listens to a port is not in the recording. A burst of reads on one port without a pause
@@ -42,6 +45,9 @@ struct CalibrationSlicing {
   double rest_m = 0.02;  // moved by less: still the same geometry
   double rest_rad = 0.035;
   double fade_length_m = 0.12;  // places nearer than this share their fade
+  // Places from which replies would come at less than this above the reader's sensitivity are left out: there
+  // it drops the weaker ones, whatever the tags do. Twice the noise of a reported RSSI.
+  double above_sensitivity_db = 3.0;
 };
 
 // The antennas are those of the scene's read plan, on the vehicle's centre. Tags never in front of an antenna

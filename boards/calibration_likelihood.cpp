@@ -23,14 +23,17 @@ constexpr std::array<Node, 5> kNormal5{{{-2.8569700138728056, 0.0112574113277207
 constexpr std::array<Node, 2> kNormalAbs{
     {{0.7419637843027259, 0.908248290463863}, {2.334414218338977, 0.0917517095361369}}};
 
-// A tag heard in many places tells its sensitivity to within a decibel: evenly spaced nodes out to three
-// deviations, where the emulated ones end.
-constexpr std::size_t kTagNodes = 15;
-std::array<Node, kTagNodes> tag_nodes() {
-  std::array<Node, kTagNodes> nodes{};
+// A tag heard in many places tells its sensitivity to within half a decibel, for the power-up limit is sharp:
+// evenly spaced nodes nearer to each other than that, out to three deviations, where the emulated ones end.
+// Fewer of them make large spreads look unlikely, because tags fall between the nodes.
+constexpr double kTagStep_db = 0.4;
+constexpr std::size_t kFewestTagNodes = 7;
+std::vector<Node> tag_nodes(double spread_db) {
+  const auto wanted = static_cast<std::size_t>(std::ceil(6.0 * spread_db / kTagStep_db)) + 1;
+  std::vector<Node> nodes(std::max(wanted, kFewestTagNodes));
   double sum = 0.0;
-  for (std::size_t i = 0; i < kTagNodes; ++i) {
-    nodes[i].x = -3.0 + 6.0 * static_cast<double>(i) / (kTagNodes - 1);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    nodes[i].x = -3.0 + 6.0 * static_cast<double>(i) / static_cast<double>(nodes.size() - 1);
     nodes[i].weight = std::exp(-0.5 * nodes[i].x * nodes[i].x);
     sum += nodes[i].weight;
   }
@@ -74,11 +77,11 @@ std::array<Fade, kFades> fades_of(double rician_k_db) {
 }
 
 // ln of the weighted mean of what these are the logarithms of.
-template <std::size_t n, class Weight>
-double log_mean(const std::array<double, n>& logs, Weight&& weight) {
+template <class Logs, class Weight>
+double log_mean(const Logs& logs, Weight&& weight) {
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < logs.size(); ++i)
     if (logs[i] > most - 40.0) sum += weight(i) * std::exp(logs[i] - most);
   return most + std::log(sum);
 }
@@ -155,13 +158,13 @@ std::vector<double> CalibrationLikelihood::log_likelihoods(const CalibrationPara
   double strongest_db = 0.0;
   for (const Fade& fade : fades) strongest_db = std::max(strongest_db, fade.db);
   std::array<double, kFades> fade_logs{};
-  const std::array<Node, kTagNodes> nodes = tag_nodes();
-  std::array<double, kTagNodes> tag_logs{};
+  const std::vector<Node> nodes = tag_nodes(p.spread_db);
+  std::vector<double> tag_logs(nodes.size());
   std::vector<double> tags;
   tags.reserve(cells_->tag_begin.size());
   for (std::size_t tag = 0; tag + 1 < cells_->tag_begin.size(); ++tag) {
     if (cells_->tag_begin[tag] == cells_->tag_begin[tag + 1]) continue;
-    for (std::size_t q = 0; q < kTagNodes; ++q) {
+    for (std::size_t q = 0; q < nodes.size(); ++q) {
       const double reach_db = r0_db + p.spread_db * nodes[q].x;
       tag_logs[q] = 0.0;
       for (std::size_t cell = cells_->tag_begin[tag]; cell < cells_->tag_begin[tag + 1]; ++cell) {
@@ -179,7 +182,7 @@ std::vector<double> CalibrationLikelihood::log_likelihoods(const CalibrationPara
 std::vector<double> CalibrationLikelihood::expected_seen(const CalibrationParameters& p) const {
   const auto fades = fades_of(p.rician_k_db);
   const double r0_db = 20.0 * std::log10(p.r0_m);
-  const std::array<Node, kTagNodes> nodes = tag_nodes();
+  const std::vector<Node> nodes = tag_nodes(p.spread_db);
   std::vector<double> expected;
   expected.reserve(cells_->bins.size());
   for (std::size_t b = 0; b < cells_->bins.size(); ++b) {

@@ -58,6 +58,18 @@ mocks::RadioSettings settings_of(const reader::ReadPlan& plan) {
   return settings;
 }
 
+constexpr std::uint32_t kUnlisted = 0xFFFFFFFF;
+
+// Where in the list each tag of the world stands.
+std::vector<std::uint32_t> places_in(const mocks::TagLayout& layout, std::size_t tags) {
+  std::vector<std::uint32_t> places(tags, 0);
+  for (const std::uint32_t tag : layout.unlisted) places[tag] = kUnlisted;
+  std::uint32_t next = 0;
+  for (std::uint32_t& place : places)
+    if (place != kUnlisted) place = next++;
+  return places;
+}
+
 }  // namespace
 
 hal::Result<Recording> simulate_recording(const Scene& scene, std::uint64_t seed, double seconds) {
@@ -67,8 +79,10 @@ hal::Result<Recording> simulate_recording(const Scene& scene, std::uint64_t seed
   CarriedBody body(scene);
   mocks::SimTagField field(world, body, antennas_of(scene), air_of(scene), seed_for(seed, SeedStream::air));
   Recording recording;
-  for (std::size_t tag = 0; tag < world.tags.size(); ++tag)
-    recording.tags.push_back({world.tags.epc_hex(tag), world.tags.position(tag)});
+  const mocks::TagLayout layout = build_layout(scene, world, seed);
+  const std::vector<std::uint32_t> listed = places_in(layout, world.tags.size());
+  for (std::size_t tag = 0; tag < layout.tags.size(); ++tag)
+    recording.tags.push_back({layout.tags.epc_hex(tag), layout.tags.position(tag)});
   field.radio_on(settings_of(scene.read_plan), hal::Instant{});
   std::vector<mocks::AirRead> heard;
   double next_pose_s = 0.0;
@@ -78,9 +92,13 @@ hal::Result<Recording> simulate_recording(const Scene& scene, std::uint64_t seed
     body.move_to(now_s);
     heard.clear();
     field.advance(hal::Instant{} + hal::from_seconds(now_s), heard);
-    for (const mocks::AirRead& read : heard)
-      recording.reads.push_back({hal::to_seconds(read.at - hal::Instant{}), read.tag, read.port,
-                                 static_cast<double>(read.rssi_dbm)});
+    for (const mocks::AirRead& read : heard) {
+      if (listed[read.tag] == kUnlisted)
+        ++recording.strangers;
+      else
+        recording.reads.push_back({hal::to_seconds(read.at - hal::Instant{}), listed[read.tag], read.port,
+                                   static_cast<double>(read.rssi_dbm)});
+    }
     if (now_s < next_pose_s && tick != ticks) continue;
     recording.poses.push_back({now_s, body.state().pose});
     next_pose_s += kPoseEvery_s;

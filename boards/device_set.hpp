@@ -32,6 +32,7 @@ struct DeviceTicks {
 struct WorldFacts {
   std::vector<SceneShelf> shelves;
   WorldTags tags;
+  std::shared_ptr<const mocks::TagList> layout;  // where they are listed; null: where they are
 };
 
 // The devices of one run, whatever stands behind them. The set owns them; drivers borrow.

@@ -14,4 +14,8 @@ namespace forager::boards {
 [[nodiscard]] hal::Result<std::size_t> write_world_tags(const Scene& scene, std::uint64_t seed,
                                                         const std::string& path);
 
+// The list that the scene keeps of them instead, with its mislabeled and unlisted tags. Errors: the same.
+[[nodiscard]] hal::Result<std::size_t> write_world_layout(const Scene& scene, std::uint64_t seed,
+                                                          const std::string& path);
+
 }  // namespace forager::boards

@@ -153,6 +153,11 @@ class Mission final : public Run {
     s.tags_present = read->wanted_present;
     s.tags_read = read->wanted_read;
     s.other_tags_read = read->others_read;
+    if (world->layout != nullptr) {
+      const auto items = store_->items();
+      if (!items) return hal::fail(items.error());
+      s.layout = check_layout(*items, *world->layout);
+    }
     return {};
   }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "boards/layout_check.hpp"
 #include "flight/mission.hpp"
 
 namespace forager::boards {
@@ -42,6 +43,8 @@ struct RunSummary {
   std::uint32_t crashes = 0;
   std::optional<double> battery_fraction;
   std::vector<PortSummary> ports;
+  // Against the scene's list of its tags, where that is wrong on purpose; empty: it lists them as they are.
+  std::optional<LayoutCheck> layout;
 };
 
 }  // namespace forager::boards

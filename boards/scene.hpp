@@ -109,12 +109,20 @@ struct SceneGroup {
   std::vector<hal::Vec3> centres;
   bool operator==(const SceneGroup&) const = default;
 };
+// One sample of a measured antenna pattern: power over that on boresight.
+struct ScenePatternSample {
+  double angle_rad = 0.0;
+  double gain_db = 0.0;
+  bool operator==(const ScenePatternSample&) const = default;
+};
 struct SceneRadio {
   double r0_m = 2.75;
   double t0_s = 1.0;
   double beam_horizontal_rad = 1.2217;
   double beam_vertical_rad = 1.2217;
-  std::string pattern = "cosine";        // cosine, gaussian
+  std::string pattern = "cosine";                     // cosine, gaussian, table
+  std::vector<ScenePatternSample> pattern_azimuth;    // of a table: angle positive to the left
+  std::vector<ScenePatternSample> pattern_elevation;  // positive upwards
   double pattern_exponent = 0.5;         // u = R / (R0 D0^e): 0.5 the paper, 1 the published plugin
   double power_up_limit = 2.0;           // beyond this u a tag has too little power, however long one listens
   double spread_db = 2.0;                // sensitivity from tag to tag, standard deviation
@@ -151,6 +159,9 @@ struct SceneWorld {
   std::string tag_file;  // CSV, as the scene names it; empty: none
   // What is in it; load_scene() reads it, read_scene() does not.
   std::shared_ptr<const mocks::TagList> file_tags;
+  // What is wrong with the list of where the tags are, as shares of them; the tags themselves stay.
+  double mislabeled = 0.0;
+  double unlisted = 0.0;
   SceneSkip skip;
   SceneRadio radio;
   SceneAir air;

@@ -45,7 +45,7 @@ SceneRadio read_radio(ConfigReader table) {
   r.t0_s = table.number("t0_s", r.t0_s, {0.01, 100.0});
   r.beam_horizontal_rad = deg_to_rad(table.number("beam_horizontal_deg", 70.0, {5.0, 180.0}));
   r.beam_vertical_rad = deg_to_rad(table.number("beam_vertical_deg", 70.0, {5.0, 180.0}));
-  r.pattern = table.choice("pattern", r.pattern, {"cosine", "gaussian"});
+  read_pattern(table, r);
   r.pattern_exponent = table.number("pattern_exponent", r.pattern_exponent, {0.1, 4.0});
   r.spread_db = table.number("spread_db", r.spread_db, {0.0, 20.0});
   r.power_up_limit = table.number("power_up_limit", r.power_up_limit, {0.1, 100.0});
@@ -85,6 +85,10 @@ SceneWorld read_world(ConfigReader table) {
   for (ConfigReader& group : table.tables("groups")) world.groups.push_back(read_group(group));
   world.store = read_store(table.table("generate"));
   world.tag_file = table.text("tag_file", "");
+  world.mislabeled = table.number("mislabeled", world.mislabeled, {0.0, 1.0});
+  world.unlisted = table.number("unlisted", world.unlisted, {0.0, 1.0});
+  if (world.mislabeled + world.unlisted > 1.0)
+    table.complain("unlisted", "and mislabeled are more than all tags", "Shares: together at most 1.");
   world.radio = read_radio(table.table("radio"));
   world.air = read_air(table.table("air"));
   world.skip = read_skip(table.table("skip"));

@@ -1,5 +1,6 @@
 #include "boards/sim_air.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "mocks/gen2_field.hpp"
@@ -7,15 +8,27 @@
 
 namespace forager::boards {
 
+hal::Result<mocks::AntennaPattern> pattern_of(const SceneRadio& radio) {
+  using mocks::AntennaPattern;
+  if (radio.pattern == "gaussian")
+    return AntennaPattern::gaussian(radio.beam_horizontal_rad, radio.beam_vertical_rad);
+  if (radio.pattern != "table")
+    return AntennaPattern::cosine_squared(radio.beam_horizontal_rad, radio.beam_vertical_rad);
+  const auto cut = [](const std::vector<ScenePatternSample>& samples) {
+    std::vector<mocks::PatternSample> powers;
+    for (const ScenePatternSample& sample : samples)
+      powers.push_back({sample.angle_rad, std::pow(10.0, 0.1 * sample.gain_db)});
+    return powers;
+  };
+  return AntennaPattern::table(cut(radio.pattern_azimuth), cut(radio.pattern_elevation));
+}
+
 mocks::AirParameters air_of(const Scene& scene) {
   const SceneRadio& radio = scene.world.radio;
   mocks::AirParameters air;
   air.r0_m = radio.r0_m;
   air.t0_s = radio.t0_s;
-  air.pattern =
-      radio.pattern == "gaussian"
-          ? mocks::AntennaPattern::gaussian(radio.beam_horizontal_rad, radio.beam_vertical_rad)
-          : mocks::AntennaPattern::cosine_squared(radio.beam_horizontal_rad, radio.beam_vertical_rad);
+  if (auto pattern = pattern_of(radio)) air.pattern = std::move(*pattern);
   air.pattern_exponent = radio.pattern_exponent;
   air.power_up_limit = radio.power_up_limit;
   air.spread_db = radio.spread_db;
@@ -66,6 +79,8 @@ hal::Result<> check_air(const Scene& scene) {
   };
   // Before the link's slots are counted, for they may be of any length.
   if (auto link = validate(slots_of(scene).link); !link) return named(std::move(link));
+  if (auto pattern = pattern_of(scene.world.radio); !pattern)
+    return named(hal::fail(std::move(pattern).error()));
   const mocks::AirParameters air = air_of(scene);
   if (auto valid = validate(air, antennas_of(scene)); !valid) return named(std::move(valid));
   return named(validate(slots_of(scene), air));

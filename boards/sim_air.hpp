@@ -12,6 +12,9 @@
 
 namespace forager::boards {
 
+// The antennas' pattern. Errors: invalid_argument from a table that is none (a scene file with such a table
+// is refused before).
+[[nodiscard]] hal::Result<mocks::AntennaPattern> pattern_of(const SceneRadio& radio);
 // The air of a scene, and where the read plan's antennas sit on the vehicle: at its centre, looking along
 // their bearings.
 [[nodiscard]] mocks::AirParameters air_of(const Scene& scene);

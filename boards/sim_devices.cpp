@@ -22,7 +22,7 @@ class SimDevices final : public DeviceSet {
   SimDevices(const Scene& scene, const DeviceOptions& options)
       : options_(options),
         world_(build_world(scene, options.seed)),
-        facts_(facts_of(world_)),
+        facts_(facts_of(scene, world_, options.seed)),
         telemetry_("sim autopilot", mocks::MemoryStreamKind::datagrams, kTelemetryBytes),
         events_("sim reader events", mocks::MemoryStreamKind::bytes, kStreamBytes),
         autopilot_(telemetry_.far(), autopilot_config(scene, options.seed)),

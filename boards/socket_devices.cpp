@@ -38,7 +38,7 @@ class SocketDevices final : public DeviceSet {
   SocketDevices(const Scene& scene, const Board& board, std::optional<hal::HttpCredentials> credentials,
                 const DeviceOptions& options)
       : world_(build_world(scene, options.seed)),
-        facts_(facts_of(world_)),
+        facts_(facts_of(scene, world_, options.seed)),
         rest_(hal::make_curl_http_client(reader_url(board), std::move(credentials))),
         events_(hal::open_tcp_stream(board.reader_host, board.reader_stream_port)),
         autopilot_(open_autopilot_line(board)),

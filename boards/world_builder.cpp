@@ -62,10 +62,17 @@ mocks::World build_world(const Scene& scene, std::uint64_t seed) {
   return world;
 }
 
-WorldFacts facts_of(const mocks::World& world) {
+mocks::TagLayout build_layout(const Scene& scene, const mocks::World& world, std::uint64_t seed) {
+  hal::Random random(seed_for(seed, SeedStream::layout));
+  return layout_of(world.tags, {scene.world.mislabeled, scene.world.unlisted}, random);
+}
+
+WorldFacts facts_of(const Scene& scene, const mocks::World& world, std::uint64_t seed) {
   WorldFacts facts;
   for (const mocks::Box& box : world.obstacles) facts.shelves.push_back({box.min, box.max});
   facts.tags = WorldTags(world.tags);
+  if (scene.world.mislabeled + scene.world.unlisted > 0.0)
+    facts.layout = std::make_shared<const mocks::TagList>(build_layout(scene, world, seed).tags);
   return facts;
 }
 

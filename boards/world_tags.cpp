@@ -1,25 +1,12 @@
 #include "boards/world_tags.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <unordered_set>
 
 #include "mocks/tag_list.hpp"
 
 namespace forager::boards {
 namespace {
-
-struct HashOfEpc96 {
-  std::size_t operator()(const mocks::Epc96& epc) const {
-    std::uint64_t front = 0;
-    std::uint64_t back = 0;
-    std::memcpy(&front, epc.data(), 8);
-    std::memcpy(&back, epc.data() + 4, 8);
-    std::uint64_t x = front ^ (back * 0x9E3779B97F4A7C15ULL);
-    x = (x ^ (x >> 32U)) * 0xD6E8FEB86659FD93ULL;
-    return static_cast<std::size_t>(x ^ (x >> 32U));
-  }
-};
 
 // The EPCs of an inventory; each is found once.
 class Sought {
@@ -44,7 +31,7 @@ class Sought {
   [[nodiscard]] std::size_t left() const { return short_.size() + odd_.size(); }
 
  private:
-  std::unordered_set<mocks::Epc96, HashOfEpc96> short_;
+  std::unordered_set<mocks::Epc96, mocks::HashOfEpc96> short_;
   std::unordered_set<std::string> odd_;
 };
 

@@ -1,21 +1,6 @@
 #include "mocks/epc_index.hpp"
 
-#include <cstring>
-
 namespace forager::mocks {
-namespace {
-
-std::uint64_t hash_of(const Epc96& epc) {
-  std::uint64_t front = 0;
-  std::uint64_t back = 0;
-  std::memcpy(&front, epc.data(), 8);
-  std::memcpy(&back, epc.data() + 4, 8);
-  std::uint64_t x = front ^ (back * 0x9E3779B97F4A7C15ULL);
-  x = (x ^ (x >> 32U)) * 0xD6E8FEB86659FD93ULL;
-  return x ^ (x >> 32U);
-}
-
-}  // namespace
 
 EpcIndex::EpcIndex(const TagList& tags) : tags_(&tags), slots_(1024, kEmpty) {
   for (std::size_t tag = 0; tag < tags.size(); ++tag) static_cast<void>(add(tag));
@@ -24,7 +9,7 @@ EpcIndex::EpcIndex(const TagList& tags) : tags_(&tags), slots_(1024, kEmpty) {
 // Where the EPC is, or the empty slot where it would go.
 std::size_t EpcIndex::place_of(const Epc96& epc) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t at = static_cast<std::size_t>(hash_of(epc)) & mask;
+  std::size_t at = HashOfEpc96{}(epc)&mask;
   while (slots_[at] != kEmpty && *tags_->epc96(slots_[at]) != epc) at = (at + 1) & mask;
   return at;
 }

@@ -1,5 +1,6 @@
 #include "mocks/tag_list.hpp"
 
+#include <cstring>
 #include <optional>
 
 namespace forager::mocks {
@@ -24,6 +25,16 @@ std::optional<Epc96> epc96_from(std::string_view hex) {
 }
 
 }  // namespace
+
+std::size_t HashOfEpc96::operator()(const Epc96& epc) const {
+  std::uint64_t front = 0;
+  std::uint64_t back = 0;
+  std::memcpy(&front, epc.data(), 8);
+  std::memcpy(&back, epc.data() + 4, 8);
+  std::uint64_t x = front ^ (back * 0x9E3779B97F4A7C15ULL);
+  x = (x ^ (x >> 32U)) * 0xD6E8FEB86659FD93ULL;
+  return static_cast<std::size_t>(x ^ (x >> 32U));
+}
 
 void append_hex(std::string& out, const Epc96& epc) {
   constexpr char kDigits[] = "0123456789abcdef";

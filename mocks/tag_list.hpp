@@ -23,6 +23,11 @@ struct Tag {
 // The bytes of a 96-bit EPC.
 using Epc96 = std::array<std::uint8_t, 12>;
 
+// For hash tables; all bytes count, for those of one shop differ in the last few only.
+struct HashOfEpc96 {
+  [[nodiscard]] std::size_t operator()(const Epc96& epc) const;
+};
+
 // 24 lower-case hexadecimal digits.
 void append_hex(std::string& out, const Epc96& epc);
 

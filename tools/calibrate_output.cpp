@@ -33,6 +33,13 @@ std::string calibration_table(const Calibration& result) {
                      result.log_likelihood);
   if (result.strangers > 0)
     out += fmt::format("; {} reads of tags of unknown place left out", result.strangers);
+  if (!result.misplaced.empty())
+    out +=
+        fmt::format("\n{} tags are not where the list has them, and were left out:", result.misplaced.size());
+  for (const boards::MisplacedTag& tag : result.misplaced)
+    out += fmt::format(
+        "\n  {}  listed at ({:.2f}, {:.2f}, {:.2f}), heard strongest from ({:.2f}, {:.2f}, {:.2f})", tag.epc,
+        tag.listed.x, tag.listed.y, tag.listed.z, tag.heard_from.x, tag.heard_from.y, tag.heard_from.z);
   out += "\nFor the scene:\n[world.radio]\n";
   for (const FittedParameter& p : result.parameters) out += fmt::format("{} = {:.3f}\n", p.name, p.value);
   return out;
@@ -55,9 +62,18 @@ std::string calibration_json(const Calibration& result) {
                 {"heard", r.seen},    {"expected", r.expected}, {"residual", r.standardised}}
                .dump() +
            "\n";
+  const auto place = [](hal::Vec3 p) { return Json{p.x, p.y, p.z}; };
+  for (const boards::MisplacedTag& tag : result.misplaced)
+    out += Json{{"misplaced", tag.epc},
+                {"listed", place(tag.listed)},
+                {"heard_from", place(tag.heard_from)},
+                {"reads", tag.reads}}
+               .dump() +
+           "\n";
   out += Json{{"reads", result.reads},
               {"tags", result.tags},
               {"strangers", result.strangers},
+              {"misplaced", result.misplaced.size()},
               {"log_likelihood", result.log_likelihood},
               {"evaluations", result.evaluations}}
              .dump() +

@@ -12,9 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "boards/layout_check.hpp"
 #include "reader/inventory_export.hpp"
 #include "reader/inventory_store.hpp"
+#include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
+#include "tools/layout_output.hpp"
 
 namespace forager::tools {
 namespace {
@@ -149,8 +152,12 @@ int run_report_command(const ReportOptions& options) {
       return complain(written.error());
     if (options.csv == "-") return kExitDone;
   }
-  const std::string text =
-      options.json ? json_lines(*contents, options.items) : table(*contents, options.items);
+  std::string text = options.json ? json_lines(*contents, options.items) : table(*contents, options.items);
+  if (!options.layout.empty()) {
+    const auto check = boards::check_layout_file(contents->items, options.layout, options.reach_m);
+    if (!check) return complain(check.error());
+    text += options.json ? layout_json_lines(*check) : layout_table(*check);
+  }
   if (const auto written = write_output("-", text); !written) return complain(written.error());
   return kExitDone;
 }
@@ -163,6 +170,11 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_option("--csv", options->csv, "Write the items as CSV to this file, - for stdout");
   command->add_flag("--items", options->items, "List every item");
   command->add_flag("--json", options->json, "JSON lines on stdout: a summary, then the items if asked for");
+  command->add_option("--layout", options->layout,
+                      "Tag file (CSV) that says where the tags should be: list those heard elsewhere");
+  command->add_option("--reach", options->reach_m, "With --layout: metres from which a tag in place is heard")
+      ->capture_default_str()
+      ->check(NumberBetween(0.1, 1000.0));
   command->callback([options, &exit_code] { exit_code = run_report_command(*options); });
 }
 

@@ -13,6 +13,8 @@ struct ReportOptions {
   std::string csv;       // write the items here, "-" for stdout instead of the table; empty: don't
   bool json = false;     // JSON lines on stdout instead of the table
   bool items = false;    // list every item after the summary
+  std::string layout;    // tag file to hold the inventory against; empty: none
+  double reach_m = 5.0;  // farther from its listed place a tag is not at it
 };
 
 // Prints the facts of a run and a summary of its inventory. Gives an exit code of tools/cli_style.hpp.

@@ -6,6 +6,7 @@
 
 #include "hal/units.hpp"
 #include "tools/cli_style.hpp"
+#include "tools/layout_output.hpp"
 
 namespace forager::tools {
 namespace {
@@ -31,6 +32,7 @@ std::string summary_table(const RunSummary& s, double wall_time_s) {
                                                        percent_of(s.tags_read, *s.tags_present)))
                         : row("tags read", fmt::format("{}", s.tags_read));
   if (s.other_tags_read > 0) out += row("other tags", fmt::format("{}", s.other_tags_read));
+  if (s.layout) out += row("layout", layout_line(*s.layout));
   out +=
       row("reads", fmt::format("{} ({:.1f} a second of flight)", s.reads,
                                s.flight_time_s > 0.0 ? static_cast<double>(s.reads) / s.flight_time_s : 0.0));
@@ -65,6 +67,7 @@ std::string summary_json(const RunSummary& s, double wall_time_s) {
       s.tags_present && *s.tags_present > 0
           ? nlohmann::ordered_json(static_cast<double>(s.tags_read) / static_cast<double>(*s.tags_present))
           : nlohmann::ordered_json();
+  if (s.layout) j["layout"] = layout_json(*s.layout);
   j["reads"] = s.reads;
   j["sim_time_s"] = s.sim_time_s;
   j["flight_time_s"] = s.flight_time_s;

@@ -4,12 +4,15 @@
 
 #include <cmath>
 
+#include "tools/layout_output.hpp"
+
 namespace forager::tools {
 namespace {
 
 std::vector<std::pair<std::string, std::string>> facts_of(const boards::RunSummary& s, double wall_time_s) {
   std::vector<std::pair<std::string, std::string>> facts;
   if (s.other_tags_read > 0) facts.emplace_back("other tags", fmt::format("{}", s.other_tags_read));
+  if (s.layout) facts.emplace_back("against the layout", layout_line(*s.layout));
   facts.emplace_back("time in flight", fmt::format("{:.1f} s of {:.1f} s", s.flight_time_s, s.sim_time_s));
   facts.emplace_back("time on the clock", fmt::format("{:.2f} s", wall_time_s));
   if (!s.detail.empty()) facts.emplace_back("ended because", s.detail);

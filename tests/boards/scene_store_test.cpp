@@ -40,8 +40,8 @@ TEST_F(SceneStoreTest, AStoreIsTheSameForTheSameSeed) {
   EXPECT_GT(once.obstacles.size(), 5U);
   EXPECT_EQ(once.tags.position(1234), again.tags.position(1234));
   EXPECT_NE(once.tags.position(1234), other.tags.position(1234));
-  EXPECT_EQ(facts_of(once).tags.size(), 2000U);
-  EXPECT_EQ(facts_of(once).tags.epc_hex(7), once.tags.epc_hex(7));
+  EXPECT_EQ(facts_of(*store, once, 1).tags.size(), 2000U);
+  EXPECT_EQ(facts_of(*store, once, 1).tags.epc_hex(7), once.tags.epc_hex(7));
 }
 
 TEST_F(SceneStoreTest, GroupsAndStoreNeverShareAnEpc) {
