@@ -9,10 +9,13 @@ struct BackendName {
   BrakeBackend backend;
   std::string_view name;
 };
-constexpr std::array kBackends{
-    BackendName{BrakeBackend::sim, "sim"},         BackendName{BrakeBackend::sysfs_pwm, "sysfs_pwm"},
-    BackendName{BrakeBackend::pca9685, "pca9685"}, BackendName{BrakeBackend::gpio, "gpio"},
-    BackendName{BrakeBackend::modbus, "modbus"},   BackendName{BrakeBackend::autopilot, "autopilot"}};
+constexpr std::array kBackends{BackendName{BrakeBackend::sim, "sim"},
+                               BackendName{BrakeBackend::sysfs_pwm, "sysfs_pwm"},
+                               BackendName{BrakeBackend::software_pwm, "software_pwm"},
+                               BackendName{BrakeBackend::pca9685, "pca9685"},
+                               BackendName{BrakeBackend::gpio, "gpio"},
+                               BackendName{BrakeBackend::modbus, "modbus"},
+                               BackendName{BrakeBackend::autopilot, "autopilot"}};
 
 // A brake must be locked at most 300 ms after something went wrong: slower than this it would not be.
 constexpr Range kSlew{4.0, 1000.0};
@@ -41,12 +44,16 @@ void read_pulses(ConfigReader& table, servo::PwmBrakeConfig& pulses) {
                      "Widen them, or correct the pulses.");
 }
 
-void read_gpio(ConfigReader& table, BrakeLine& line) {
+void read_gpio_line(ConfigReader& table, BrakeLine& line) {
   table.require("chip", "the chip's label, such as chip = \"pinctrl-bcm2711\"");
   table.require("line", "the line's name, such as line = \"GPIO17\"");
   line.chip = table.text("chip", "");
   line.line = table.text("line", "");
   line.active_low = table.flag("active_low", false);
+}
+
+void read_gpio(ConfigReader& table, BrakeLine& line) {
+  read_gpio_line(table, line);
   if (table.choice("when_active", "opens", {"opens", "locks"}) == "locks")
     line.when_active = servo::WhenActive::locks;
 }
@@ -74,8 +81,8 @@ void read_modbus(ConfigReader& table, BrakeLine& line) {
 }
 
 BrakeBackend backend_of(ConfigReader& table) {
-  const std::string name =
-      table.choice("backend", "sim", {"sim", "sysfs_pwm", "pca9685", "gpio", "modbus", "autopilot"});
+  const std::string name = table.choice(
+      "backend", "sim", {"sim", "sysfs_pwm", "software_pwm", "pca9685", "gpio", "modbus", "autopilot"});
   for (const BackendName& known : kBackends)
     if (known.name == name) return known.backend;
   return BrakeBackend::sim;
@@ -95,6 +102,9 @@ void read_line(ConfigReader table, BrakeLine& line) {
       line.chip = table.text("chip", "pwmchip0");
       table.require("channel", "the channel of the chip, such as channel = 0");
       line.channel = static_cast<std::uint32_t>(table.integer("channel", 0, {0, 1023}));
+      break;
+    case BrakeBackend::software_pwm:
+      read_gpio_line(table, line);
       break;
     case BrakeBackend::pca9685:
       line.bus = table.text("bus", "/dev/i2c-1");

@@ -13,25 +13,26 @@
 namespace forager::boards {
 
 enum class BrakeBackend : std::uint8_t {
-  sim,        // emulated in this process
-  sysfs_pwm,  // a servo on a PWM chip of the kernel
-  pca9685,    // a servo on a PCA9685
-  gpio,       // a solenoid on a GPIO line
-  modbus,     // a linear actuator
-  autopilot,  // a servo on an output of the autopilot
+  sim,           // emulated in this process
+  sysfs_pwm,     // a servo on a PWM chip of the kernel
+  software_pwm,  // a servo on a GPIO line, its pulses made by a thread of this process
+  pca9685,       // a servo on a PCA9685
+  gpio,          // a solenoid on a GPIO line
+  modbus,        // a linear actuator
+  autopilot,     // a servo on an output of the autopilot
 };
 [[nodiscard]] std::string_view to_string(BrakeBackend backend);
 
 // One brake: which backend, and where on it.
 struct BrakeLine {
   BrakeBackend backend = BrakeBackend::sim;
-  servo::PwmBrakeConfig pulses{};  // sim, sysfs_pwm, pca9685, autopilot
-  std::string chip{};              // sysfs_pwm, gpio: name or label
+  servo::PwmBrakeConfig pulses{};  // sim, sysfs_pwm, software_pwm, pca9685, autopilot
+  std::string chip{};              // sysfs_pwm, software_pwm, gpio: name or label
   std::uint32_t channel = 0;       // sysfs_pwm, pca9685; autopilot: its output, from 1
   std::string bus{};               // pca9685: "/dev/i2c-1"; modbus: "/dev/ttyUSB0" or "192.168.1.30:502"
   std::uint8_t address = 0x40;     // pca9685
-  std::string line{};              // gpio: name or number
-  bool active_low = false;         // gpio
+  std::string line{};              // software_pwm, gpio: name or number
+  bool active_low = false;         // software_pwm, gpio
   servo::WhenActive when_active = servo::WhenActive::opens;  // gpio
   int baud = 19200;                                          // modbus on a serial line
   char parity = 'E';

@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <exception>
 #include <utility>
+#include <vector>
 
 #include "boards/board.hpp"
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/i2c_dev.hpp"
 #include "hal/linux/kernel.hpp"
 #include "hal/linux/modbus_bus.hpp"
+#include "hal/linux/software_pwm.hpp"
 #include "hal/linux/sysfs_pwm.hpp"
 #include "mocks/fake_pwm.hpp"
 #include "servo/pca9685.hpp"
@@ -39,9 +43,19 @@ struct Brake {
   }
 };
 
+constexpr hal::Duration kStale = std::chrono::milliseconds(150);
+
+// Where servo::PwmBrake sends the servo to lock it.
+hal::Duration safe_pulse(const servo::PwmBrakeConfig& pulses) {
+  return std::clamp(pulses.locked_pulse + pulses.trim, pulses.min_pulse, pulses.max_pulse);
+}
+
 class Devices final : public BrakeDevices {
  public:
   explicit Devices(const BrakeDeviceOptions& options) : options_(options) {}
+  ~Devices() override { note_jitter(); }
+  Devices(const Devices&) = delete;
+  Devices& operator=(const Devices&) = delete;
 
   hal::Result<> open(const BrakeBoard& board);
   servo::BrakeActuator& left() override { return *left_.actuator; }
@@ -59,12 +73,15 @@ class Devices final : public BrakeDevices {
                              Brake& brake);
   hal::Result<> open_modbus(const BrakeLine& line, Hardware& own, Hardware& other, Brake& brake);
   hal::Result<> open_gpio(const BrakeLine& line, Hardware& own, Brake& brake);
+  hal::Result<> open_software(const BrakeBoard& board);
+  void note_jitter() noexcept;
   [[nodiscard]] hal::Kernel& kernel() const {
     return options_.kernel != nullptr ? *options_.kernel : hal::real_kernel();
   }
 
   BrakeDeviceOptions options_;
-  Hardware left_hardware_;  // before the brakes, which borrow it
+  std::unique_ptr<hal::SoftwarePwm> software_;  // one thread for both
+  Hardware left_hardware_;                      // before the brakes, which borrow it
   Hardware right_hardware_;
   Brake left_;
   Brake right_;
@@ -73,6 +90,7 @@ class Devices final : public BrakeDevices {
 };
 
 hal::Result<> Devices::open(const BrakeBoard& board) {
+  FORAGER_TRY(open_software(board));
   FORAGER_TRY(open_brake(board, board.left, left_hardware_, right_hardware_, left_));
   return open_brake(board, board.right, right_hardware_, left_hardware_, right_);
 }
@@ -107,8 +125,45 @@ hal::Result<> Devices::open_pca9685(const BrakeBoard& board, const BrakeLine& li
                                        servo::Pca9685Config{.address = line.address, .period = board.period});
   shared_bus_ = line.bus;
   shared_address_ = line.address;
-  FORAGER_TRY(own.pca9685->open(options_.clock.now()));
+  const hal::Instant now = options_.clock.now();
+  FORAGER_TRY(options_.take_over ? own.pca9685->adopt(now) : own.pca9685->open(now));
   return attach(own.pca9685->channel(line.channel), line, brake);
+}
+
+// While the program hangs the thread goes on: it then locks the brakes by itself.
+hal::Result<> Devices::open_software(const BrakeBoard& board) {
+  std::vector<hal::SoftwarePwmLine> lines;
+  hal::Duration patience = kStale;
+  for (const BrakeLine* line : {&board.left, &board.right}) {
+    patience += line->backend == BrakeBackend::modbus ? 2 * line->timeout : hal::Duration::zero();
+    if (line->backend != BrakeBackend::software_pwm) continue;
+    auto out = hal::open_gpio_out({.chip = line->chip, .line = line->line, .active_low = line->active_low});
+    if (!out) return hal::fail(std::move(out).error());
+    lines.push_back({*std::move(out), safe_pulse(line->pulses)});
+  }
+  if (lines.empty()) return {};
+  auto pwm = hal::open_software_pwm(std::move(lines), {.period = board.period, .stale_after = patience});
+  if (!pwm) return hal::fail(std::move(pwm).error());
+  software_ = *std::move(pwm);
+  options_.journal.note(options_.clock.now(), "software pwm", software_->facts().text);
+  return {};
+}
+
+void Devices::note_jitter() noexcept {
+  if (!software_ || software_->pulse_jitter().count() == 0) return;
+  try {
+    const auto us = [](hal::Duration time) { return static_cast<double>(time.count()) / 1e3; };
+    const hal::Jitter& late = software_->pulse_jitter();
+    options_.journal.note(
+        options_.clock.now(), "software pwm",
+        fmt::format(
+            "{} pulses, too long by {:.1f} us (median), {:.1f} us (99 %), {:.1f} us (most); {} periods "
+            "missed",
+            late.count(), us(late.quantile(0.5)), us(late.quantile(0.99)), us(late.max()),
+            software_->missed_periods()));
+  } catch (const std::exception&) {  // no memory for a note is no reason not to end
+    return;
+  }
 }
 
 hal::Result<> Devices::open_modbus(const BrakeLine& line, Hardware& own, Hardware& other, Brake& brake) {
@@ -151,6 +206,10 @@ hal::Result<> Devices::open_brake(const BrakeBoard& board, const BrakeLine& line
   switch (line.backend) {
     case BrakeBackend::sysfs_pwm:
       return open_sysfs(board, line, own, brake);
+    case BrakeBackend::software_pwm: {
+      const bool second = &brake == &right_ && board.left.backend == BrakeBackend::software_pwm;
+      return attach(software_->channel(second ? 1 : 0), line, brake);
+    }
     case BrakeBackend::pca9685:
       return open_pca9685(board, line, own, other, brake);
     case BrakeBackend::gpio:
@@ -170,6 +229,7 @@ hal::Result<> Devices::open_brake(const BrakeBoard& board, const BrakeLine& line
 }
 
 hal::Result<> Devices::update(hal::Instant now) {
+  if (software_) software_->feed();
   for (Hardware* hardware : {&left_hardware_, &right_hardware_})
     if (hardware->pca9685) FORAGER_TRY(hardware->pca9685->update(now));
   return {};

@@ -36,6 +36,7 @@ struct BrakeDeviceOptions {
   hal::Journal& journal;                       // both must outlive the devices
   flight::MavlinkServos* autopilot = nullptr;  // for backend "autopilot"
   hal::Kernel* kernel = nullptr;               // null: Linux
+  bool take_over = false;  // a PCA9685 that runs keeps its other outputs; else it starts with all off
 };
 
 // Opens both, sharing what they share (one I2C bus, one PWM chip, one Modbus line). Moves nothing; the brake

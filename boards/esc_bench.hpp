@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,10 @@
 #include "hal/journal.hpp"
 #include "hal/pwm.hpp"
 #include "hal/time.hpp"
+
+namespace forager::hal {
+class Kernel;
+}
 
 namespace forager::boards {
 
@@ -32,16 +37,24 @@ class EscBench {
   [[nodiscard]] virtual std::vector<flight::EscLine> lines() = 0;
   // Null: a person connects the battery.
   [[nodiscard]] virtual hal::DigitalOut* power() = 0;
-  // Lets emulated ESCs live up to `now`.
-  virtual void advance(hal::Instant now) = 0;
+  // Lets emulated ESCs and chips live up to `now`. Errors: those of a chip; io (a chip lost its supply for a
+  // moment: its pulses stopped, the ESCs stopped by themselves and must be armed anew).
+  [[nodiscard]] virtual hal::Result<> advance(hal::Instant now) = 0;
   // Nothing where the ESC is real: it does not answer.
   [[nodiscard]] virtual std::optional<EscSeen> seen(std::size_t motor) const = 0;
   [[nodiscard]] virtual bool emulated() const = 0;
 };
 
+enum class EscStart : std::uint8_t {
+  anew,       // a PCA9685 starts with all outputs off
+  take_over,  // one that runs goes on, and so do its other outputs
+};
+
 // Emulated ones run on virtual time if `clock` does; the journal gets their signs (beeps, calibration).
-// Errors: those of the output (not_present, permission, busy, ...).
+// Null kernel: Linux. Errors: those of the output (not_present, permission, busy, ...).
 [[nodiscard]] hal::Result<std::unique_ptr<EscBench>> open_esc_bench(const EscBoard& board, hal::Clock& clock,
-                                                                    hal::Journal& journal);
+                                                                    hal::Journal& journal,
+                                                                    EscStart start = EscStart::anew,
+                                                                    hal::Kernel* kernel = nullptr);
 
 }  // namespace forager::boards

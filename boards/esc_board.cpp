@@ -1,5 +1,7 @@
 #include "boards/esc_board.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -31,6 +33,26 @@ void read_motors(ConfigReader& table, std::vector<EscMotor>& motors) {
     table.complain("motor", "names no motor, or more than sixteen", "Name one to sixteen.");
 }
 
+void read_output(ConfigReader& table, EscBoard& board) {
+  const std::string output = table.choice("output", "sysfs", {"emulated", "sysfs", "pca9685"});
+  if (output == "emulated") return;
+  board.output = output == "sysfs" ? EscOutput::sysfs : EscOutput::pca9685;
+  if (board.output == EscOutput::sysfs) {
+    board.chip = table.text("chip", board.chip);
+    return;
+  }
+  board.bus = table.text("bus", board.bus);
+  board.address = static_cast<std::uint8_t>(table.integer("address", board.address, {8, 119}));
+  board.timeout = table.duration("timeout_ms", board.timeout, {10, 1000});
+}
+
+void check_channels(ConfigReader& table, const EscBoard& board) {
+  if (board.output != EscOutput::pca9685) return;
+  for (const EscMotor& motor : board.motors)
+    if (motor.channel > 15)
+      table.complain("motor", "names a channel above 15", "A PCA9685 has channels 0 to 15.");
+}
+
 void read_pulses(ConfigReader& table, flight::EscPulses& pulses) {
   if (table.choice("protocol", "pwm", {"pwm", "oneshot125"}) == "oneshot125")
     pulses.protocol = flight::EscProtocol::oneshot125;
@@ -42,14 +64,26 @@ void read_pulses(ConfigReader& table, flight::EscPulses& pulses) {
 
 }  // namespace
 
+std::string output_text(const EscBoard& board) {
+  switch (board.output) {
+    case EscOutput::sysfs:
+      return board.chip;
+    case EscOutput::pca9685:
+      return fmt::format("pca9685 0x{:02x} on {}", board.address, board.bus);
+    case EscOutput::emulated:
+      break;
+  }
+  return "emulated";
+}
+
 EscBoard read_esc_board(ConfigReader table) {
   EscBoard board;
   board.named = table.present();
   if (!board.named) return board;
-  if (table.choice("output", "sysfs", {"emulated", "sysfs"}) == "sysfs") board.output = EscOutput::sysfs;
-  board.chip = table.text("chip", board.chip);
+  read_output(table, board);
   board.period = hal::from_seconds(1.0 / table.number("frequency_hz", 50.0, {50.0, 4000.0}));
   read_motors(table, board.motors);
+  check_channels(table, board);
   read_pulses(table, board.bank.pulses);
   constexpr Range kRate{0.01, 100.0};
   board.bank.rise_per_s = table.number("rise_per_s", board.bank.rise_per_s, kRate);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "boards/board.hpp"
 #include "boards/scene.hpp"
@@ -9,6 +10,9 @@
 #include "reader/advannet_reader.hpp"
 
 namespace forager::boards {
+
+// The reader's output with the lamp: active while the robot is armed.
+inline constexpr std::uint8_t kLampLine = 1;
 
 // A scene in the terms of the parts that carry it out.
 [[nodiscard]] flight::RobotLoopConfig robot_config(const Scene& scene, std::size_t expected_tags);

@@ -128,7 +128,6 @@ class Mission final : public Run {
   }
 
  private:
-  static constexpr std::uint8_t kLampLine = 1;
   static constexpr hal::Duration kStopAllowance =
       std::chrono::seconds(10);  // for the reader to be told to stop
 

@@ -111,6 +111,23 @@ hal::Result<> Pca9685::open(hal::Instant now) {
   return wake();
 }
 
+hal::Result<> Pca9685::adopt(hal::Instant now) {
+  const auto wanted = prescale_for(config_.period);
+  if (!wanted) return hal::fail(wanted.error());
+  const auto mode1 = read(kMode1);
+  const auto prescale = mode1 ? read(kPreScale) : mode1;
+  if (!prescale) return hal::fail(prescale.error());
+  if (!runs(*mode1) || *prescale != *wanted) return open(now);
+  now_ = now;
+  prescale_ = *prescale;
+  was_open_ = true;
+  state_ = State::running;
+  next_check_ = now + config_.check_interval;
+  return enable_ != nullptr ? enable_->set(true) : hal::Result<>{};
+}
+
+bool Pca9685::runs(std::uint8_t mode1) { return (mode1 & (kSleep | kAutoIncrement)) == kAutoIncrement; }
+
 hal::Result<> Pca9685::wake() {
   FORAGER_TRY(write(kMode1, kAutoIncrement));
   state_ = State::waking;
@@ -154,7 +171,7 @@ hal::Result<> Pca9685::check(hal::Instant now) {
     state_ = State::closed;
     return hal::fail(prescale.error());
   }
-  if ((*mode1 & (kSleep | kAutoIncrement)) == kAutoIncrement && *prescale == prescale_) return {};
+  if (runs(*mode1) && *prescale == prescale_) return {};
   ++recoveries_;
   journal_->note(
       now, "pca9685",

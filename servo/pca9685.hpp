@@ -77,6 +77,10 @@ class Pca9685 final : public hal::PwmGroup {
   // that is 0.655 to 41.9 ms at 25 MHz), protocol (something else answers at this address), and those of
   // hal::I2c.
   [[nodiscard]] hal::Result<> open(hal::Instant now);
+  // Takes a chip over that runs already as the configuration says, without touching its outputs: for whoever
+  // must change some of them while others go on, when the program that made it run is gone. One that does not
+  // run so is opened. Errors as open().
+  [[nodiscard]] hal::Result<> adopt(hal::Instant now);
   // Ends the waking, checks the chip. Errors as open(); the next update() tries again after check_interval.
   [[nodiscard]] hal::Result<> update(hal::Instant now);
 
@@ -105,6 +109,7 @@ class Pca9685 final : public hal::PwmGroup {
   [[nodiscard]] hal::Result<> wake();
   [[nodiscard]] hal::Result<> finish_waking();
   [[nodiscard]] hal::Result<> check(hal::Instant now);
+  [[nodiscard]] static bool runs(std::uint8_t mode1);
   [[nodiscard]] long ticks(hal::Duration pulse) const;
 
   hal::I2c* bus_;

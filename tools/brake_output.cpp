@@ -25,6 +25,7 @@ std::string place_of(const boards::BrakeLine& line) {
       return fmt::format("{} channel {}", line.chip, line.channel);
     case boards::BrakeBackend::pca9685:
       return fmt::format("{} 0x{:02x} channel {}", line.bus, line.address, line.channel);
+    case boards::BrakeBackend::software_pwm:
     case boards::BrakeBackend::gpio:
       return fmt::format("{} {}", line.chip, line.line);
     case boards::BrakeBackend::modbus:

@@ -10,6 +10,7 @@
 #include "boards/scene.hpp"
 #include "boards/speed_contest.hpp"
 #include "tools/bench_duel.hpp"
+#include "tools/bench_jitter.hpp"
 #include "tools/bench_mission.hpp"
 #include "tools/bench_row.hpp"
 #include "tools/cli_checks.hpp"
@@ -64,6 +65,17 @@ void add_accuracy_command(CLI::App& bench, int& exit_code) {
   accuracy->callback([command, &exit_code] { exit_code = run_bench_accuracy(*command); });
 }
 
+void add_jitter_command(CLI::App& bench, int& exit_code) {
+  auto command = std::make_shared<JitterCommand>();
+  CLI::App* jitter = bench.add_subcommand(
+      "jitter", "How exact software PWM is on this machine, idle and with every processor busy");
+  jitter->add_option("--seconds", command->seconds, "Of each of the four measurements")
+      ->capture_default_str()
+      ->check(NumberBetween(0.1, 3600.0));
+  jitter->add_flag("--json", command->json, "JSON lines: name, ours, unit");
+  jitter->callback([command, &exit_code] { exit_code = run_bench_jitter(*command); });
+}
+
 }  // namespace
 
 int run_bench_speed(const BenchCommand& command) {
@@ -104,6 +116,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                   "JSON lines: name, ours, unit, peer, peer_value, ratio = ours / peer_value");
   speed->callback([command, &exit_code] { exit_code = run_bench_speed(*command); });
   add_accuracy_command(*bench, exit_code);
+  add_jitter_command(*bench, exit_code);
 }
 
 }  // namespace forager::tools

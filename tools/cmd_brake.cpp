@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "boards/board.hpp"
 #include "boards/brake_bench.hpp"
+#include "boards/output_guard.hpp"
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
 #include "tools/brake_output.hpp"
@@ -28,11 +30,12 @@ constexpr hal::Duration kCommandLife = 100ms;
 class BrakeSession {
  public:
   BrakeSession(const BrakeCommandLine& command, hal::Clock& clock, boards::BrakeBench& bench,
-               BrakeOutput& output)
-      : command_(command), clock_(clock), bench_(bench), output_(output), next_(clock.now()) {}
+               boards::OutputGuard& guard, BrakeOutput& output)
+      : command_(command), clock_(clock), bench_(bench), guard_(guard), output_(output), next_(clock.now()) {}
 
   int run() {
     if (!wait_until_ready()) return StopSignal::raised() ? kExitFailure : complain_no_autopilot();
+    if (const auto armed = guard_.arm(); !armed) return complain(armed.error());
     pair_ = &bench_.engage(clock_.now());
     if (command_.task == BrakeTask::watch)
       tick_for(command_.for_s > 0.0 ? hal::from_seconds(command_.for_s) : hal::Duration::max(), false);
@@ -46,7 +49,8 @@ class BrakeSession {
   bool tick() {
     next_ = std::max(next_ + kTick, clock_.now());
     clock_.sleep_until(next_);
-    const hal::Result<> updated = bench_.update(clock_.now());
+    hal::Result<> updated = bench_.update(clock_.now());
+    if (auto fed = guard_.feed(); !fed && updated) updated = std::move(fed);
     if (pair_ != nullptr) output_.state(clock_.now(), *pair_, bench_);
     if (!updated && pair_ != nullptr && !failed_) {
       failed_ = true;
@@ -90,6 +94,7 @@ class BrakeSession {
   const BrakeCommandLine& command_;
   hal::Clock& clock_;
   boards::BrakeBench& bench_;
+  boards::OutputGuard& guard_;
   BrakeOutput& output_;
   hal::Instant next_;
   servo::BrakePair* pair_ = nullptr;
@@ -162,6 +167,8 @@ int run_brake_command(const BrakeCommandLine& command) {
   }
   if (!command.arm)
     return complain_usage("nothing moves without --arm: both brakes will lock, and go where they are told");
+  const auto guard = boards::OutputGuard::start(*board, {.brakes = true}, "forager brake");
+  if (!guard) return complain(guard.error());
   const bool jumps = all_emulated(brakes) && !command.real_time;
   if (jumps && command.task == BrakeTask::watch && !(command.for_s > 0.0))
     return complain_usage("emulated brakes are watched with --for, or with --real-time");
@@ -173,7 +180,7 @@ int run_brake_command(const BrakeCommandLine& command) {
   if (!journal) return complain(journal.error());
   const auto bench = boards::open_brake_bench(*board, *clock, **journal);
   if (!bench) return complain(bench.error());
-  return BrakeSession(command, *clock, **bench, output).run();
+  return BrakeSession(command, *clock, **bench, **guard, output).run();
 }
 
 void add_brake_command(CLI::App& app, int& exit_code) {

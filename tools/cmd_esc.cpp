@@ -11,6 +11,7 @@
 
 #include "boards/board.hpp"
 #include "boards/esc_bench.hpp"
+#include "boards/output_guard.hpp"
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
 #include "flight/motor_authority.hpp"
@@ -31,8 +32,14 @@ constexpr hal::Duration kTick = 10ms;
 class EscSession {
  public:
   EscSession(const EscCommand& command, hal::Clock& clock, boards::EscBench& bench, flight::EscBank& bank,
-             EscOutput& output)
-      : command_(command), clock_(clock), bench_(bench), bank_(bank), output_(output), next_(clock.now()) {}
+             boards::OutputGuard& guard, EscOutput& output)
+      : command_(command),
+        clock_(clock),
+        bench_(bench),
+        bank_(bank),
+        guard_(guard),
+        output_(output),
+        next_(clock.now()) {}
 
   int run(const flight::PropsOff& word) {
     if (command_.task == EscTask::calibrate) return calibrate(word);
@@ -52,12 +59,25 @@ class EscSession {
 
  private:
   bool tick() {
-    if (StopSignal::raised()) return false;
+    if (StopSignal::raised() || trouble_) return false;
     next_ = std::max(next_ + kTick, clock_.now());
     clock_.sleep_until(next_);
-    bench_.advance(clock_.now());
-    bank_.update(clock_.now());
-    return true;
+    hal::Result<> lives = guard_.feed();
+    if (lives) lives = bench_.advance(clock_.now());
+    if (lives)
+      bank_.update(clock_.now());
+    else
+      stop_for(lives.error());
+    return lives.has_value();
+  }
+  // Stop pulses, and the time a chip that was made anew takes to send them.
+  void stop_for(const hal::Error& error) {
+    trouble_ = error;
+    bank_.halt();
+    for (int i = 0; i < 3; ++i) {
+      clock_.sleep_until(clock_.now() + kTick);
+      static_cast<void>(bench_.advance(clock_.now()));
+    }
   }
   void while_state(flight::EscState state, hal::Duration time) {
     const hal::Instant end = clock_.now() + time;
@@ -101,9 +121,10 @@ class EscSession {
     const std::string why = bank_.reason();
     if (interrupted) output_.tell(clock_.now(), fmt::format("{}: stop pulses", StopSignal::name()));
     bank_.disarm(interrupted ? StopSignal::name() : "done", clock_.now());
-    bench_.advance(clock_.now());
+    static_cast<void>(bench_.advance(clock_.now()));
     output_.end(bank_, bench_, clock_.now());
     if (interrupted) return kExitFailure;
+    if (trouble_) return complain(*trouble_);
     if (faulted) return complain_fault(why);
     return check();
   }
@@ -126,10 +147,12 @@ class EscSession {
   hal::Clock& clock_;
   boards::EscBench& bench_;
   flight::EscBank& bank_;
+  boards::OutputGuard& guard_;
   EscOutput& output_;
   hal::Instant next_;
   bool turned_ = false;
   bool cut_short_ = false;
+  std::optional<hal::Error> trouble_;  // of the chip, or of the guard
 };
 
 // What is wrong with the request itself; empty if nothing.
@@ -221,6 +244,8 @@ int run_esc_command(const EscCommand& command) {
     output.list(lines);
     return kExitDone;
   }
+  const auto guard = boards::OutputGuard::start(*board, {.escs = true}, "forager esc");
+  if (!guard) return complain(guard.error());
   const bool emulated = lines.output == boards::EscOutput::emulated;
   const auto clock =
       emulated && !command.real_time ? boards::make_virtual_clock() : boards::make_real_clock(1.0);
@@ -240,7 +265,8 @@ int run_esc_command(const EscCommand& command) {
   const auto bank = flight::EscBank::create(*std::move(motors), (*bench)->group(), (*bench)->lines(),
                                             (*bench)->power(), **journal, config, clock->now());
   if (!bank) return complain(bank.error());
-  EscSession session(command, *clock, **bench, **bank, output);
+  if (auto armed = (*guard)->arm(); !armed) return complain(armed.error());
+  EscSession session(command, *clock, **bench, **bank, **guard, output);
   if (command.task == EscTask::stop) return session.stop();
   const auto word = flight::PropsOff::confirm(command.props_off);
   return word ? session.run(*word) : complain(word.error());

@@ -10,6 +10,7 @@
 #include <memory>
 #include <system_error>
 
+#include "boards/output_guard.hpp"
 #include "boards/replay_run.hpp"
 #include "boards/run.hpp"
 #include "boards/run_clock.hpp"
@@ -185,6 +186,8 @@ int run_run_command(const RunCommand& command) {
   if (!scene) return complain(scene.error());
   const auto board = boards::load_board(command.board);
   if (!board) return complain(board.error());
+  const auto guard = boards::OutputGuard::start(*board, {.reader = true}, "forager run");
+  if (!guard) return complain(guard.error());
   const auto files = make_files(command, *scene, *board);
   if (!files) return complain(files.error());
 
@@ -214,6 +217,7 @@ int run_run_command(const RunCommand& command) {
     remove_files(*files);
     return complain(run.error());
   }
+  if (const auto armed = (*guard)->arm(); !armed) return complain(armed.error());
   const auto wall_start = WallClock::now();
   const auto flown = run_to_end(**run, *clock, watch);
   const double wall_time_s = std::chrono::duration<double>(WallClock::now() - wall_start).count();

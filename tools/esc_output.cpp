@@ -50,7 +50,7 @@ void EscOutput::list(const boards::EscBoard& board) {
     for (const boards::EscMotor& motor : board.motors)
       motors.push_back({{"name", motor.name}, {"channel", motor.channel}});
     return print({{"event", "list"},
-                  {"output", emulated ? "emulated" : board.chip},
+                  {"output", output_text(board)},
                   {"protocol", to_string(pulses.protocol)},
                   {"frequency_hz", 1.0 / hal::to_seconds(board.period)},
                   {"stop_us", us(pulses.stop)},
@@ -59,7 +59,7 @@ void EscOutput::list(const boards::EscBoard& board) {
                   {"high_us", us(pulses.high)},
                   {"motors", motors}});
   }
-  fmt::print("output    {}\n", emulated ? "emulated in this process" : board.chip);
+  fmt::print("output    {}\n", emulated ? "emulated in this process" : one_line(output_text(board)));
   fmt::print("protocol  {} at {:.1f} Hz\n", to_string(pulses.protocol), 1.0 / hal::to_seconds(board.period));
   fmt::print("pulses    stop {:.1f}, idle {:.1f}, full {:.1f}, calibration {:.1f} us\n", us(pulses.stop),
              us(pulses.idle), us(pulses.full), us(pulses.high));

@@ -16,6 +16,7 @@
 #include "tools/cmd_emulate.hpp"
 #include "tools/cmd_esc.hpp"
 #include "tools/cmd_generate.hpp"
+#include "tools/cmd_guard.hpp"
 #include "tools/cmd_gpio.hpp"
 #include "tools/cmd_i2c.hpp"
 #include "tools/cmd_pwm.hpp"
@@ -60,6 +61,7 @@ int run_command(int argc, char** argv) {
   add_servo_command(app, exit_code);
   add_brake_command(app, exit_code);
   add_esc_command(app, exit_code);
+  add_guard_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
   add_reproduce_command(app, exit_code);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "boards/service_watch.hpp"
 #include "tools/stop_signal.hpp"
 
 namespace forager::tools {
@@ -24,6 +25,7 @@ class Flight {
 
   void go() {
     const StopSignal signals;
+    const auto service = boards::ServiceWatch::begin();
     for (hal::Instant next = clock_.now(); !run_.done() && !hopeless_; next += boards::Run::kTick) {
       clock_.sleep_until(next);
       const hal::Instant now = clock_.now();
@@ -32,6 +34,7 @@ class Flight {
         halt(now);
       }
       update(now);
+      service->alive(now);
       if (halted_at_ && now - *halted_at_ > kToLand) give_up(now);
       if (now > next + kStoodStill) next = now;
     }

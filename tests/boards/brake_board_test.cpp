@@ -110,6 +110,9 @@ TEST(BrakeBoard, MistakesAreNamedWithTheirPlace) {
   EXPECT_THAT(complaint("backend = \"pwm\"\n"), HasSubstr("sysfs_pwm"));
   EXPECT_THAT(complaint("backend = \"sysfs_pwm\"\n"), HasSubstr("channel"));
   EXPECT_THAT(complaint("backend = \"gpio\"\nchip = \"gpiochip0\"\n"), HasSubstr("line"));
+  EXPECT_THAT(complaint("backend = \"software_pwm\"\nchip = \"gpiochip0\"\n"), HasSubstr("line"));
+  EXPECT_THAT(complaint("backend = \"software_pwm\"\nchip = \"gpiochip0\"\nline = \"4\"\nlocked_us = 1180\n"),
+              HasSubstr("same pulse"));
   EXPECT_THAT(complaint("backend = \"autopilot\"\n"), HasSubstr("output"));
   EXPECT_THAT(complaint("backend = \"modbus\"\n"), HasSubstr("bus"));
   EXPECT_THAT(complaint("backend = \"sim\"\nchannel = 3\n"), HasSubstr("channel"));  // it has none

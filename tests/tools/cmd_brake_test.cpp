@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/scratch_folder.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 
 namespace forager::tools {
@@ -18,30 +18,12 @@ namespace {
 using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::StartsWith;
-
-std::vector<nlohmann::json> lines_of(const std::string& out) {
-  std::vector<nlohmann::json> lines;
-  std::istringstream in(out);
-  for (std::string line; std::getline(in, line);) lines.push_back(nlohmann::json::parse(line));
-  return lines;
-}
 
 nlohmann::json last_state(const std::string& out) {
   nlohmann::json last;
   for (const auto& line : lines_of(out))
     if (line["event"] == "state") last = line;
   return last;
-}
-
-void expect_refusal(const std::vector<std::string>& arguments, int exit_code,
-                    const testing::Matcher<const std::string&>& says) {
-  const ProgramResult result = run_program(arguments);
-  SCOPED_TRACE(testing::PrintToString(arguments));
-  EXPECT_EQ(result.exit_code, exit_code);
-  EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, AllOf(StartsWith("forager: "), says));
-  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
 TEST(CmdBrake, ListSaysWhereBothAre) {

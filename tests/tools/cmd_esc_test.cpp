@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/scratch_folder.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 
 namespace forager::tools {
@@ -18,25 +18,12 @@ namespace {
 using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 constexpr const char* kSentence = "the propellers are off";
 
-std::vector<nlohmann::json> lines_of(const std::string& out) {
-  std::vector<nlohmann::json> lines;
-  std::istringstream in(out);
-  for (std::string line; std::getline(in, line);) lines.push_back(nlohmann::json::parse(line));
-  return lines;
-}
-
-void expect_refusal(const std::vector<std::string>& arguments,
-                    const testing::Matcher<const std::string&>& says) {
-  const ProgramResult result = run_program(arguments);
-  SCOPED_TRACE(testing::PrintToString(arguments));
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, AllOf(StartsWith("forager: "), says));
-  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+void expect_usage(const std::vector<std::string>& arguments,
+                  const testing::Matcher<const std::string&>& says) {
+  expect_refusal(arguments, 2, says);
 }
 
 TEST(CmdEsc, ListSaysWhatTheLinesMean) {
@@ -108,12 +95,12 @@ TEST(CmdEsc, CtrlCStopsTheMotors) {
 }
 
 TEST(CmdEsc, NothingTurnsWithoutArmAndTheSentence) {
-  expect_refusal({"esc", "run", "--throttle", "0.2", "--hold", "1"}, HasSubstr("--arm"));
-  expect_refusal({"esc", "run", "--arm", "--throttle", "0.2", "--hold", "1"}, HasSubstr(kSentence));
-  expect_refusal({"esc", "run", "--arm", "--props-off", "yes", "--throttle", "0.2", "--hold", "1"},
-                 HasSubstr(kSentence));
-  expect_refusal({"esc", "calibrate", "--props-off", kSentence}, HasSubstr("--arm"));
-  expect_refusal({"esc", "calibrate", "--arm"}, HasSubstr(kSentence));
+  expect_usage({"esc", "run", "--throttle", "0.2", "--hold", "1"}, HasSubstr("--arm"));
+  expect_usage({"esc", "run", "--arm", "--throttle", "0.2", "--hold", "1"}, HasSubstr(kSentence));
+  expect_usage({"esc", "run", "--arm", "--props-off", "yes", "--throttle", "0.2", "--hold", "1"},
+               HasSubstr(kSentence));
+  expect_usage({"esc", "calibrate", "--props-off", kSentence}, HasSubstr("--arm"));
+  expect_usage({"esc", "calibrate", "--arm"}, HasSubstr(kSentence));
 }
 
 TEST(CmdEsc, SaysWhatIsWrongWithTheRequest) {
@@ -122,14 +109,14 @@ TEST(CmdEsc, SaysWhatIsWrongWithTheRequest) {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
-  expect_refusal(with({"--throttle", "1.2", "--hold", "1"}), HasSubstr("1.2"));
-  expect_refusal(with({"--throttle", "nan", "--hold", "1"}), HasSubstr("nan"));
-  expect_refusal(with({"--throttle", "0.2", "--hold", "0"}), HasSubstr("--hold"));
-  expect_refusal(with({"--hold", "1"}), HasSubstr("--throttle"));
-  expect_refusal(with({"--throttle", "0.2"}), HasSubstr("--hold"));
-  expect_refusal(with({"--throttle", "0.2", "--hold", "1", "--motor", "left"}),
-                 AllOf(HasSubstr("'left'"), HasSubstr("rear-left")));
-  expect_refusal({"esc"}, HasSubstr("list, run, calibrate, stop"));
+  expect_usage(with({"--throttle", "1.2", "--hold", "1"}), HasSubstr("1.2"));
+  expect_usage(with({"--throttle", "nan", "--hold", "1"}), HasSubstr("nan"));
+  expect_usage(with({"--throttle", "0.2", "--hold", "0"}), HasSubstr("--hold"));
+  expect_usage(with({"--hold", "1"}), HasSubstr("--throttle"));
+  expect_usage(with({"--throttle", "0.2"}), HasSubstr("--hold"));
+  expect_usage(with({"--throttle", "0.2", "--hold", "1", "--motor", "left"}),
+               AllOf(HasSubstr("'left'"), HasSubstr("rear-left")));
+  expect_usage({"esc"}, HasSubstr("list, run, calibrate, stop"));
 }
 
 TEST(CmdEsc, ABoardFileNamesItsLines) {
@@ -152,14 +139,23 @@ most_throttle = 0.3
                                          "--motor", "right", "--throttle", "0.2", "--hold", "1"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
 
-  expect_refusal({"esc", "list", "--board", board("")}, HasSubstr("[esc]"));
-  expect_refusal({"esc", "list", "--board", board("[esc]\nfrequency_hz = 500\n")}, HasSubstr("490 Hz"));
-  expect_refusal({"esc", "list", "--board", board("[esc]\nidle_us = 1450\n")}, HasSubstr("calibrate"));
-  expect_refusal({"esc", "list", "--board",
-                  board("[esc]\nmotor = [{ name = \"a\", channel = 1 }, { name = "
-                        "\"b\", channel = 1 }]\n")},
-                 HasSubstr("twice"));
-  expect_refusal({"esc", "list", "--board", board("[esc]\nthrotle = 1\n")}, HasSubstr("throtle"));
+  const auto chip =
+      lines_of(run_program({"esc", "list", "--json", "--board",
+                            board("[esc]\noutput = \"pca9685\"\nbus = \"/dev/i2c-7\"\naddress = 0x41\n")})
+                   .out);
+  ASSERT_EQ(chip.size(), 1U);
+  EXPECT_EQ(chip[0]["output"], "pca9685 0x41 on /dev/i2c-7");
+  expect_usage({"esc", "list", "--board",
+                board("[esc]\noutput = \"pca9685\"\nmotor = [{ name = \"left\", channel = 16 }]\n")},
+               HasSubstr("channels 0 to 15"));
+  expect_usage({"esc", "list", "--board", board("")}, HasSubstr("[esc]"));
+  expect_usage({"esc", "list", "--board", board("[esc]\nfrequency_hz = 500\n")}, HasSubstr("490 Hz"));
+  expect_usage({"esc", "list", "--board", board("[esc]\nidle_us = 1450\n")}, HasSubstr("calibrate"));
+  expect_usage({"esc", "list", "--board",
+                board("[esc]\nmotor = [{ name = \"a\", channel = 1 }, { name = "
+                      "\"b\", channel = 1 }]\n")},
+               HasSubstr("twice"));
+  expect_usage({"esc", "list", "--board", board("[esc]\nthrotle = 1\n")}, HasSubstr("throtle"));
 }
 
 TEST(CmdEsc, ARealBoardThatIsNotThereSaysSo) {
@@ -174,8 +170,8 @@ chip = "pwmchip987"
   const ProgramResult stop = run_program({"esc", "stop", "--board", board});
   EXPECT_EQ(stop.exit_code, 3);
   EXPECT_THAT(stop.err, HasSubstr("pwmchip987"));
-  expect_refusal({"esc", "calibrate", "--board", board, "--arm", "--props-off", kSentence},
-                 HasSubstr("--battery-off"));
+  expect_usage({"esc", "calibrate", "--board", board, "--arm", "--props-off", kSentence},
+               HasSubstr("--battery-off"));
 }
 
 }  // namespace
