@@ -104,10 +104,22 @@ struct libusb_device_handle {
 
 namespace {
 
-std::map<std::string, libusb_device*> known;  // NOLINT: by path; holds one reference
+// Devices by path; holds one reference of each.
+struct Known {
+  Known() = default;
+  ~Known() { clear(); }
+  Known(const Known&) = delete;
+  Known& operator=(const Known&) = delete;
+  void clear() {
+    for (const auto& [path, device] : devices) libusb_unref_device(device);
+    devices.clear();
+  }
+  std::map<std::string, libusb_device*> devices;
+};
+Known known;  // NOLINT
 
 libusb_device* device_at(const UsbDeviceFacts& facts) {
-  auto& device = known[facts.path];
+  auto& device = known.devices[facts.path];
   if (device == nullptr) device = new libusb_device(facts);
   return device;
 }
@@ -164,7 +176,7 @@ void tell_of_plugs(libusb_context* context) {
                   event.arrived ? LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED : LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT,
                   listener.user);
     if (event.arrived) continue;
-    known.erase(event.device.path);
+    known.devices.erase(event.device.path);
     libusb_unref_device(device);
   }
 }
@@ -176,7 +188,6 @@ namespace forager::hal::fake {
 Libusb& libusb() { return *instance(); }
 
 void new_libusb() {
-  for (const auto& [path, device] : known) libusb_unref_device(device);
   known.clear();
   submitted.clear();
   listener = {};
