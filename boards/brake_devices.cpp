@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "boards/board.hpp"
+#include "boards/usb_bridges.hpp"
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/i2c_dev.hpp"
 #include "hal/linux/kernel.hpp"
@@ -52,7 +53,7 @@ hal::Duration safe_pulse(const servo::PwmBrakeConfig& pulses) {
 
 class Devices final : public BrakeDevices {
  public:
-  explicit Devices(const BrakeDeviceOptions& options) : options_(options) {}
+  explicit Devices(const BrakeDeviceOptions& options) : options_(options), bridges_(options.hid) {}
   ~Devices() override { note_jitter(); }
   Devices(const Devices&) = delete;
   Devices& operator=(const Devices&) = delete;
@@ -80,6 +81,7 @@ class Devices final : public BrakeDevices {
   }
 
   BrakeDeviceOptions options_;
+  UsbBridges bridges_;  // before what stands on them
   std::unique_ptr<hal::SoftwarePwm> software_;  // one thread for both
   Hardware left_hardware_;                      // before the brakes, which borrow it
   Hardware right_hardware_;
@@ -117,7 +119,9 @@ hal::Result<> Devices::open_pca9685(const BrakeBoard& board, const BrakeLine& li
                                     Hardware& other, Brake& brake) {
   const bool shared = other.pca9685 && shared_bus_ == line.bus && shared_address_ == line.address;
   if (shared) return attach(other.pca9685->channel(line.channel), line, brake);
-  auto bus = hal::open_i2c_dev({.device = line.bus, .timeout = line.timeout}, kernel());
+  auto bus = UsbBridges::named(line.bus)
+                 ? bridges_.i2c(line.bus, line.timeout)
+                 : hal::open_i2c_dev({.device = line.bus, .timeout = line.timeout}, kernel());
   if (!bus) return hal::fail(std::move(bus).error());
   own.i2c = *std::move(bus);
   own.pca9685 =
@@ -190,10 +194,12 @@ hal::Result<> Devices::open_modbus(const BrakeLine& line, Hardware& own, Hardwar
 // spring-applied one locks inactive, the other kind locks active and keeps it.
 hal::Result<> Devices::open_gpio(const BrakeLine& line, Hardware& own, Brake& brake) {
   const bool opens = line.when_active == servo::WhenActive::opens;
-  auto out = hal::open_gpio_out({.chip = line.chip,
-                                 .line = line.line,
-                                 .active_low = line.active_low,
-                                 .at_end = opens ? hal::GpioAtEnd::inactive : hal::GpioAtEnd::as_is});
+  auto out = UsbBridges::named(line.chip)
+                 ? bridges_.output(line.chip, line.line, line.active_low, !opens)
+                 : hal::open_gpio_out({.chip = line.chip,
+                                       .line = line.line,
+                                       .active_low = line.active_low,
+                                       .at_end = opens ? hal::GpioAtEnd::inactive : hal::GpioAtEnd::as_is});
   if (!out) return hal::fail(std::move(out).error());
   own.gpio = *std::move(out);
   brake.actuator = std::make_unique<servo::DigitalBrake>(*own.gpio, line.when_active);

@@ -12,6 +12,7 @@
 #include "servo/brake_actuator.hpp"
 
 namespace forager::hal {
+class Hid;
 class Kernel;
 }
 
@@ -36,6 +37,7 @@ struct BrakeDeviceOptions {
   hal::Journal& journal;                       // both must outlive the devices
   flight::MavlinkServos* autopilot = nullptr;  // for backend "autopilot"
   hal::Kernel* kernel = nullptr;               // null: Linux
+  hal::Hid* hid = nullptr;                     // where USB bridges are found; null: this machine
   bool take_over = false;  // a PCA9685 that runs keeps its other outputs; else it starts with all off
 };
 

@@ -10,7 +10,9 @@
 
 #include "boards/board.hpp"
 #include "flight/mavlink/mavlink_wire.hpp"
+#include "mocks/fake_hid.hpp"
 #include "mocks/sim_i2c_bus.hpp"
+#include "mocks/sim_mcp2221.hpp"
 #include "mocks/sim_pca9685.hpp"
 #include "mocks/text_journal.hpp"
 #include "mocks/virtual_clock.hpp"
@@ -45,6 +47,7 @@ class Machine {
     for (int i = 0; i < 28; ++i) gpio.chips[0].lines.push_back({.name = "GPIO" + std::to_string(i)});
     wires.attach(0x40, pca9685);
     kernel.files["/dev/i2c-1"] = std::make_shared<hal::fake::FakeI2cNode>(wires);
+    hid.plug(bridge);
   }
   void pass(hal::Instant now) {
     pca9685.advance(now);
@@ -59,6 +62,8 @@ class Machine {
   hal::fake::FakePwmChip chip{kernel, clock, "pwmchip0", 2};
   mocks::SimI2cBus wires{"wires"};
   mocks::SimPca9685 pca9685;
+  mocks::SimMcp2221 bridge{wires};
+  mocks::FakeHid hid;
   flight::MavlinkServos servos{flight::MavlinkConfig{}};
   std::array<std::optional<hal::Duration>, 17> outputs{};
 };
@@ -89,6 +94,14 @@ const Backend kSysfs{"sysfs", "backend = \"sysfs_pwm\"\nchannel = 0\n",
 const Backend kPca9685{
     "pca9685", "backend = \"pca9685\"\nchannel = 4\n", "backend = \"pca9685\"\nchannel = 5\n",
     [](Machine& machine, bool left) { return fraction_of(machine.pca9685.pulse(left ? 4 : 5), left); }};
+const Backend kPca9685OverUsb{"pca9685_over_usb", "backend = \"pca9685\"\nbus = \"mcp2221:SN0001\"\nchannel = 4\n",
+                              "backend = \"pca9685\"\nbus = \"mcp2221:SN0001\"\nchannel = 5\n", kPca9685.pin};
+const Backend kGpioOverUsb{"gpio_over_usb", "backend = \"gpio\"\nchip = \"mcp2221\"\nline = \"GP0\"\n",
+                           "backend = \"gpio\"\nchip = \"mcp2221:SN0001\"\nline = \"GP3\"\nactive_low = true\n",
+                           [](Machine& machine, bool left) -> std::optional<double> {
+                             const bool energised = left ? machine.bridge.level(0) : !machine.bridge.level(3);
+                             return energised ? 0.0 : 1.0;
+                           }};
 const Backend kGpio{"gpio", "backend = \"gpio\"\nchip = \"pinctrl-bcm2711\"\nline = \"GPIO17\"\n",
                     "backend = \"gpio\"\nchip = \"pinctrl-bcm2711\"\nline = \"GPIO27\"\nactive_low = true\n",
                     [](Machine&, bool left) -> std::optional<double> {
@@ -108,7 +121,8 @@ class EveryBackend : public testing::TestWithParam<Backend> {
     auto devices = open_brake_devices(board_, {.clock = machine_.clock,
                                                .journal = journal_,
                                                .autopilot = &machine_.servos,
-                                               .kernel = &machine_.kernel});
+                                               .kernel = &machine_.kernel,
+                                               .hid = &machine_.hid});
     ASSERT_TRUE(devices) << describe(devices.error());
     devices_ = *std::move(devices);
     brakes_.emplace(devices_->left(), devices_->right(), journal_, board_.pair, machine_.clock.now());
@@ -222,7 +236,8 @@ TEST_P(EveryBackend, TheSameControllerBringsTheVehicleToItsGoalThroughThePins) {
   EXPECT_GE(steer.stats().turns, 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Brakes, EveryBackend, testing::Values(kSysfs, kPca9685, kGpio, kAutopilot),
+INSTANTIATE_TEST_SUITE_P(Brakes, EveryBackend,
+                         testing::Values(kSysfs, kPca9685, kPca9685OverUsb, kGpio, kGpioOverUsb, kAutopilot),
                          [](const auto& backend) { return backend.param.name; });
 
 TEST(BrakeDevices, ALineSomebodyHoldsIsNamed) {
