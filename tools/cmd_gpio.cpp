@@ -227,14 +227,14 @@ void add_gpio_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"on", "off"}));
   sub->add_option("--hold", set->hold_s, "Time, such as 2s or 500ms")
       ->required()
-      ->check(TimeSpan(0.001, 3600.0));
+      ->transform(TimeSpan(0.001, 3600.0));
   sub->add_flag("--arm", set->arm, "Yes, the line may be driven");
   add_line_options(sub, *set, false);
   auto watch = std::make_shared<GpioCommand>();
   sub = add_task(*gpio, "watch", "Edges of lines as they come, until Ctrl-C", GpioTask::watch, watch,
                  exit_code);
   sub->add_option("LINE", watch->lines, kLine)->required();
-  sub->add_option("--for", watch->for_s, "Stop after this time")->check(TimeSpan(0.001, 1e6));
+  sub->add_option("--for", watch->for_s, "Stop after this time")->transform(TimeSpan(0.001, 1e6));
   add_line_options(sub, *watch, true);
 }
 

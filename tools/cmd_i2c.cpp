@@ -120,7 +120,7 @@ CLI::App* add_task(CLI::App& i2c, const char* name, const char* what, I2cTask ta
   add_target_options(sub, command->target, false);
   if (task != I2cTask::list)
     sub->add_option("--timeout", command->timeout_s, "Of one transfer; the kernel rounds up to 10 ms")
-        ->check(TimeSpan(0.001, 1.0));
+        ->transform(TimeSpan(0.001, 1.0));
   if (task == I2cTask::read || task == I2cTask::write)
     sub->add_option("CHIP", command->chip, "Name of the board file, or BUS@ADDRESS (1@0x40)")->required();
   sub->callback([command, &exit_code] { exit_code = run_i2c_command(*command); });

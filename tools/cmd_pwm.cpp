@@ -167,7 +167,7 @@ void add_pwm_command(CLI::App& app, int& exit_code) {
       ->check(NumberBetween(0.0, 1e6));
   sub->add_option("--hold", set->hold_s, "Time, such as 2s or 500ms")
       ->required()
-      ->check(TimeSpan(0.01, 3600.0));
+      ->transform(TimeSpan(0.01, 3600.0));
   auto sweep = std::make_shared<PwmCommand>();
   sub = add_moving(*pwm, "sweep", "Pulses from one length to another and back; then none", PwmTask::sweep,
                    sweep, exit_code);
@@ -179,7 +179,7 @@ void add_pwm_command(CLI::App& app, int& exit_code) {
       ->check(NumberBetween(0.0, 1e6));
   sub->add_option("--over", sweep->over_s, "Time of one way")
       ->capture_default_str()
-      ->check(TimeSpan(0.05, 600.0));
+      ->transform(TimeSpan(0.05, 600.0));
 }
 
 }  // namespace forager::tools

@@ -155,7 +155,7 @@ void add_hold(CLI::App* sub, ServoCommand& command) {
   sub->add_option("--hold", command.hold_s,
                   "Time, the way there included, such as 2s; then it goes to its safe place")
       ->required()
-      ->check(TimeSpan(0.01, 3600.0));
+      ->transform(TimeSpan(0.01, 3600.0));
 }
 
 std::string what_moves(const ServoCommand& command) {
@@ -197,7 +197,7 @@ void add_servo_command(CLI::App& app, int& exit_code) {
   sub->add_option("--to", sweep->to, "0 to 1")->capture_default_str()->check(NumberBetween(0.0, 1.0));
   sub->add_option("--over", sweep->over_s, "Time of one way")
       ->capture_default_str()
-      ->check(TimeSpan(0.05, 600.0));
+      ->transform(TimeSpan(0.05, 600.0));
   auto trim = std::make_shared<ServoCommand>();
   sub =
       add_moving(*servo, "trim", "Try a trim instead of the board file's", ServoTask::trim, trim, exit_code);
