@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "boards/bench_devices.hpp"
+#include "boards/usb_bridges.hpp"
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/i2c_dev.hpp"
 #include "hal/linux/kernel.hpp"
@@ -75,10 +76,14 @@ class RealMachine final : public BenchMachine {
     return facts;
   }
   hal::Result<std::unique_ptr<hal::DigitalOut>> open_out(const BenchLine& line) override {
-    return hal::open_gpio_out(config_of(line));
+    if (!UsbBridges::named(line.chip)) return hal::open_gpio_out(config_of(line));
+    FORAGER_TRY(plain(line));
+    return bridges_.output(line.chip, line.line, line.active_low, line.keep_at_end);
   }
   hal::Result<std::unique_ptr<hal::DigitalIn>> open_in(const BenchLine& line) override {
-    return hal::open_gpio_in(config_of(line));
+    if (!UsbBridges::named(line.chip)) return hal::open_gpio_in(config_of(line));
+    FORAGER_TRY(plain(line));
+    return bridges_.input(line.chip, line.line, line.active_low);
   }
   hal::Result<std::unique_ptr<hal::EdgeIn>> open_edges(const BenchLine& line) override {
     return hal::open_gpio_edges(config_of(line, hal::GpioEdges::both));
@@ -87,10 +92,20 @@ class RealMachine final : public BenchMachine {
   hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place) override;
   std::vector<std::string> i2c_buses() override;
   hal::Result<std::unique_ptr<hal::I2c>> open_i2c(const std::string& bus, hal::Duration timeout) override {
+    if (UsbBridges::named(bus)) return bridges_.i2c(bus, timeout);
     return hal::open_i2c_dev({.device = bus, .timeout = timeout}, *kernel_);
   }
 
  private:
+  // A bridge's pins have no resistors, no open drain and no filter.
+  [[nodiscard]] static hal::Result<> plain(const BenchLine& line) {
+    const auto how = config_of(line);
+    if (how.bias == hal::GpioBias::as_is && how.drive == hal::GpioDrive::push_pull &&
+        how.debounce == hal::Duration::zero())
+      return {};
+    return hal::fail(hal::ErrorCode::unsupported, line.chip + "/" + line.line, "open",
+                     "the bridge has no bias, no open drain and no debouncing", "Leave them out");
+  }
   [[nodiscard]] std::int64_t number(const std::string& path) {
     const auto text = hal::read_file(*kernel_, path);
     return text ? std::strtoll(text->c_str(), nullptr, 10) : 0;
@@ -99,6 +114,7 @@ class RealMachine final : public BenchMachine {
   hal::Journal* journal_;
   hal::Kernel* kernel_;
   std::unique_ptr<hal::Clock> clock_;
+  UsbBridges bridges_;
 };
 
 hal::Result<std::vector<PwmFacts>> RealMachine::pwm_chips() {
