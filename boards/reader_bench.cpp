@@ -64,15 +64,16 @@ class EmulatedReader final : public ReaderBench {
 
 }  // namespace
 
-Scene bench_scene() {
-  auto root = parse_config(kBenchScene, "bench");
-  return root.and_then([](const ConfigNode& node) { return read_scene(node, "bench"); }).value_or(Scene{});
+hal::Result<Scene> bench_scene() {
+  return parse_config(kBenchScene, "bench").and_then([](const ConfigNode& node) {
+    return read_scene(node, "bench");
+  });
 }
 
 hal::Result<std::unique_ptr<ReaderBench>> open_reader_bench(const Board& board, const Scene& scene,
-                                                            std::uint64_t seed, hal::Journal& journal) {
+                                                            std::uint64_t seed) {
   if (board.kind == BoardKind::sim) {
-    auto devices = make_sim_devices(scene, {.seed = seed, .journal = &journal});
+    auto devices = make_sim_devices(scene, {.seed = seed});
     if (!devices) return hal::fail(std::move(devices).error());
     return std::make_unique<EmulatedReader>(*std::move(devices));
   }

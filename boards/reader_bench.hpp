@@ -10,7 +10,6 @@
 #include "hal/byte_stream.hpp"
 #include "hal/error.hpp"
 #include "hal/http_client.hpp"
-#include "hal/journal.hpp"
 #include "hal/time.hpp"
 
 namespace forager::boards {
@@ -27,14 +26,13 @@ class ReaderBench {
 
 // Scene of a bench without one: four antennas around a vehicle that stands, 40 tags 1 to 2 m before the first
 // of them, a few beside.
-[[nodiscard]] Scene bench_scene();
+[[nodiscard]] hal::Result<Scene> bench_scene();
 
-// The board of kind sim has a reader, its air and the scene's tags emulated in this process. Journal (of the
-// emulation) must outlive the bench. Errors: those of reader_login(); unsupported.
+// The board of kind sim has a reader, its air and the scene's tags emulated in this process. Errors: those of
+// reader_login(); unsupported.
 [[nodiscard]] hal::Result<std::unique_ptr<ReaderBench>> open_reader_bench(const Board& board,
                                                                           const Scene& scene,
-                                                                          std::uint64_t seed,
-                                                                          hal::Journal& journal);
+                                                                          std::uint64_t seed);
 
 // User and password of the board's reader; empty: no login. Errors: not_present (the environment variable is
 // not set).

@@ -6,6 +6,11 @@ get_property(libraries GLOBAL PROPERTY FORAGER_LIBRARIES)
 install(TARGETS ${libraries} EXPORT foragerTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET forager)
   install(TARGETS forager RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES tools/forager.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          RENAME forager)
+endif()
+if(TARGET forager_manual)
+  install(FILES "${PROJECT_BINARY_DIR}/tools/forager.1" DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 endif()
 
 foreach(folder IN ITEMS hal reader servo flight mocks boards)

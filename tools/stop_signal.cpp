@@ -41,6 +41,8 @@ StopSignal::~StopSignal() {
 
 bool StopSignal::raised() { return caught != 0; }
 
+void StopSignal::forget() { caught = 0; }
+
 const char* StopSignal::name() {
   switch (caught) {
     case SIGINT:

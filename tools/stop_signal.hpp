@@ -12,6 +12,8 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
   [[nodiscard]] static bool raised();
+  // Goes on as if none had come, for whatever must still be brought into its safe state.
+  static void forget();
   // Name of the signal caught ("SIGINT"), or "".
   [[nodiscard]] static const char* name();
 };
