@@ -147,16 +147,15 @@ void check_output(const Doctor& doctor, const std::string& name, const PwmPlace&
 }
 
 void check_brake_line(const Doctor& doctor, const std::string& side, const BrakeLine& line) {
-  if (line.backend == BrakeBackend::gpio)
+  if (line.backend == BrakeBackend::gpio || line.backend == BrakeBackend::software_pwm)
     check_line(doctor, {.name = "brakes." + side, .chip = line.chip, .line = line.line, .output = true});
 }
 
 void check_motors(const Doctor& doctor, const EscBoard& esc) {
   for (const EscMotor& motor : esc.motors) {
-    PwmPlace place;
-    place.chip = esc.chip;
-    place.channel = motor.channel;
+    PwmPlace place{.chip = esc.chip, .bus = esc.bus, .address = esc.address, .channel = motor.channel};
     if (esc.output == EscOutput::emulated) place.backend = PwmBackend::sim;
+    if (esc.output == EscOutput::pca9685) place.backend = PwmBackend::pca9685;
     check_output(doctor, "esc " + motor.name, place);
   }
 }
