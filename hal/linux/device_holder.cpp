@@ -29,10 +29,10 @@ std::string holder_of(Kernel& kernel, const std::string& path) {
   const std::string device = real_device(kernel, path);
   for (const std::string& process : kernel.list("/proc")) {
     if (!is_number(process)) continue;
-    const std::string folder = "/proc/" + process;
-    for (const std::string& fd : kernel.list(folder + "/fd")) {
-      if (kernel.link(folder + "/fd/" + fd) != device) continue;
-      return fmt::format("process {} ({})", process, read_file(kernel, folder + "/comm").value_or("?"));
+    for (const std::string& fd : kernel.list(fmt::format("/proc/{}/fd", process))) {
+      if (kernel.link(fmt::format("/proc/{}/fd/{}", process, fd)) != device) continue;
+      const auto name = read_file(kernel, fmt::format("/proc/{}/comm", process));
+      return fmt::format("process {} ({})", process, name.value_or("?"));
     }
   }
   return {};
