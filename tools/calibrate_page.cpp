@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "tools/calibrate_output.hpp"
+#include "tools/page_frame.hpp"
 #include "tools/report_markup.hpp"
-#include "tools/report_style.hpp"
 
 namespace forager::tools {
 namespace {
@@ -63,50 +63,59 @@ std::string draw_shares(const Calibration& result) {
 }
 
 void put_parameters(std::string& out, const Calibration& result) {
-  out +=
-      "<section class=\"card\">\n<h2>Parameters</h2>\n<table><thead><tr><th scope=\"col\">Name</th><th "
-      "scope=\"col\" "
-      "class=\"number\">Value</th><th scope=\"col\" class=\"number\">95 % "
-      "interval</th></tr></thead><tbody>\n";
-  for (const auto& p : result.parameters)
-    put(out,
-        "<tr><th scope=\"row\">{}</th><td class=\"number\">{:.3f} {}</td><td class=\"number\">{}</td></tr>\n",
-        escape_markup(p.name), p.value, escape_markup(p.unit), interval_text(p));
-  out += "</tbody></table>\n</section>\n";
+  begin_table(out, "Parameters", {{"Name", false}, {"Value"}, {"95 % interval"}}, false);
+  for (const auto& p : result.parameters) {
+    put(out, "<tr><th scope=\"row\">{}</th>", escape_markup(p.name));
+    put_number(out, fmt::format("{:.3f} {}", p.value, escape_markup(p.unit)));
+    put_number(out, interval_text(p));
+    out += "</tr>\n";
+  }
+  end_table(out);
 }
 
 void put_residuals(std::string& out, const Calibration& result) {
-  out +=
-      "<section class=\"card full\">\n<h2>Residuals</h2>\n<table><thead><tr><th scope=\"col\">Range, "
-      "m</th><th "
-      "scope=\"col\" class=\"number\">Slices</th><th scope=\"col\" class=\"number\">Heard</th><th "
-      "scope=\"col\" "
-      "class=\"number\">Expected</th><th scope=\"col\" class=\"number\">Residual</th></tr></thead><tbody>\n";
-  for (const CalibrationResidual& r : result.residuals)
-    put(out,
-        "<tr><td>{:.2f} – {:.2f}</td><td class=\"number\">{:.0f}</td><td class=\"number\">{:.0f}</td><td "
-        "class=\"number\">{:.1f}</td><td class=\"number\">{:+.2f}</td></tr>\n",
-        r.from_m, r.to_m, r.slices, r.seen, r.expected, r.standardised);
-  out += "</tbody></table>\n</section>\n";
+  begin_table(out, "Residuals", {{"Range, m", false}, {"Slices"}, {"Heard"}, {"Expected"}, {"Residual"}});
+  for (const CalibrationResidual& r : result.residuals) {
+    put(out, "<tr><td>{:.2f} – {:.2f}</td>", r.from_m, r.to_m);
+    put_number(out, fmt::format("{:.0f}", r.slices));
+    put_number(out, fmt::format("{:.0f}", r.seen));
+    put_number(out, fmt::format("{:.1f}", r.expected));
+    put_number(out, fmt::format("{:+.2f}", r.standardised));
+    out += "</tr>\n";
+  }
+  end_table(out);
+}
+
+void put_misplaced(std::string& out, const Calibration& result) {
+  if (result.misplaced.empty()) return;
+  const auto place = [](hal::Vec3 p) { return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x, p.y, p.z); };
+  begin_table(out, "Tags that are not where the list has them",
+              {{"EPC", false}, {"Listed at"}, {"Heard strongest from"}, {"Reads"}});
+  for (const boards::MisplacedTag& tag : result.misplaced) {
+    put(out, "<tr><th scope=\"row\">{}</th>", escape_markup(tag.epc));
+    put_number(out, place(tag.listed));
+    put_number(out, place(tag.heard_from));
+    put_number(out, fmt::format("{}", tag.reads));
+    out += "</tr>\n";
+  }
+  end_table(out);
 }
 
 }  // namespace
 
 std::string calibration_page(const Calibration& result) {
   std::string out;
+  begin_page(out, "Radio calibration");
   put(out,
-      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
-      "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-      "<title>Radio calibration</title>\n<style>{}</style>\n</head>\n<body>\n<header>\n<h1>Radio "
-      "calibration</h1>\n<p class=\"sub\">{} reads of {} tags</p>\n</header>\n<main>\n<div class=\"grid\">\n",
-      report_style(), result.reads, result.tags);
+      "<header>\n<h1>Radio calibration</h1>\n<p class=\"sub\">{} reads of {} tags</p>\n</header>\n<main>\n"
+      "<div class=\"grid\">\n",
+      result.reads, result.tags);
   put_parameters(out, result);
   put(out, "<section class=\"card\">\n<h2>Heard share over range</h2>\n{}</section>\n", draw_shares(result));
   put_residuals(out, result);
-  out +=
-      "</div>\n</main>\n<footer>Written by forager. Dots: heard. Line: expected. Residual: heard less "
-      "expected in "
-      "standard deviations.</footer>\n</body>\n</html>\n";
+  put_misplaced(out, result);
+  out += "</div>\n";
+  end_page(out, "Dots: heard. Line: expected. Residual: heard less expected in standard deviations.");
   return out;
 }
 

@@ -1,7 +1,7 @@
 #include "tools/reproduce_page.hpp"
 
+#include "tools/page_frame.hpp"
 #include "tools/report_markup.hpp"
-#include "tools/report_style.hpp"
 #include "tools/reproduce_plots.hpp"
 
 namespace forager::tools {
@@ -10,8 +10,6 @@ namespace {
 using boards::ReproducedRun;
 using boards::Reproduction;
 
-void put_cell(std::string& out, std::string_view text) { put(out, "<td class=\"number\">{}</td>", text); }
-
 std::string signed_points(std::optional<double> points) {
   return points ? fmt::format("{:+.1f}", *points) : std::string("–");
 }
@@ -19,28 +17,29 @@ std::string signed_points(std::optional<double> points) {
 void put_row(std::string& out, const ReproducedRun& run) {
   put(out, "<tr><th scope=\"row\">{} <small>{}</small></th>", escape_markup(run.published.run),
       escape_markup(run.title));
-  put_cell(out, fmt::format("{}", run.published.tags));
+  put_number(out, fmt::format("{}", run.published.tags));
   const auto published = run.published.coverage_percent();
-  put_cell(out, published ? fmt::format("{:.1f}", *published) : "–");
-  put_cell(out, fmt::format("{:.1f}", run.coverage_percent.median));
-  put_cell(out, fmt::format("{:.1f} – {:.1f}", run.coverage_percent.p5, run.coverage_percent.p95));
-  put_cell(out, signed_points(run.difference_points()));
-  put_cell(out, fmt::format("{:.0f}", run.duration_s.median));
-  put_cell(out, run.published.duration_s ? fmt::format("{:.0f}", *run.published.duration_s) : "–");
+  put_number(out, published ? fmt::format("{:.1f}", *published) : "–");
+  put_number(out, fmt::format("{:.1f}", run.coverage_percent.median));
+  put_number(out, fmt::format("{:.1f} – {:.1f}", run.coverage_percent.p5, run.coverage_percent.p95));
+  put_number(out, signed_points(run.difference_points()));
+  put_number(out, fmt::format("{:.0f}", run.duration_s.median));
+  put_number(out, run.published.duration_s ? fmt::format("{:.0f}", *run.published.duration_s) : "–");
   out += "</tr>\n";
 }
 
 void put_table(std::string& out, const Reproduction& result) {
-  out +=
-      "<section class=\"card full\">\n<h2>Published and simulated</h2>\n<table><thead><tr>"
-      "<th scope=\"col\">Experiment</th><th scope=\"col\" class=\"number\">Tags</th>"
-      "<th scope=\"col\" class=\"number\">Published, %</th><th scope=\"col\" class=\"number\">Median, %</th>"
-      "<th scope=\"col\" class=\"number\">5 – 95 %</th><th scope=\"col\" class=\"number\">Difference, "
-      "points</th>"
-      "<th scope=\"col\" class=\"number\">Time, s</th><th scope=\"col\" class=\"number\">Published, s</th>"
-      "</tr></thead><tbody>\n";
+  begin_table(out, "Published and simulated",
+              {{"Experiment", false},
+               {"Tags"},
+               {"Published, %"},
+               {"Median, %"},
+               {"5 – 95 %"},
+               {"Difference, points"},
+               {"Time, s"},
+               {"Published, s"}});
   for (const ReproducedRun& run : result.runs) put_row(out, run);
-  out += "</tbody></table>\n</section>\n";
+  end_table(out);
 }
 
 void put_ratios(std::string& out, const Reproduction& result) {
@@ -76,14 +75,11 @@ void put_tiles(std::string& out, const Reproduction& result) {
 
 std::string reproduction_page(const Reproduction& result) {
   std::string out;
-  put(out,
-      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
-      "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-      "<title>Published experiments, simulated</title>\n<style>{}</style>\n</head>\n<body>\n<header>\n"
-      "<h1>Published experiments, simulated</h1>\n<p class=\"sub\">Share of the tags read, in per cent of "
-      "those in "
-      "place</p>\n",
-      report_style());
+  begin_page(out, "Published experiments, simulated");
+  out +=
+      "<header>\n<h1>Published experiments, simulated</h1>\n<p class=\"sub\">Share of the tags read, in per "
+      "cent "
+      "of those in place</p>\n";
   put_tiles(out, result);
   out += "</header>\n<main>\n<div class=\"grid\">\n";
   put(out, "<section class=\"card full\">\n<h2>Coverage</h2>\n{}</section>\n", draw_coverages(result));
@@ -93,10 +89,8 @@ std::string reproduction_page(const Reproduction& result) {
   for (std::size_t i = 0; i < result.runs.size(); ++i)
     put(out, "<section class=\"card\">\n<h2>Tags against time, {}</h2>\n{}</section>\n",
         escape_markup(result.runs[i].published.run), draw_tags_against_time(result.runs[i], i));
-  out +=
-      "</div>\n</main>\n<footer>Written by forager. Times from switching on to the end. Bands from the 5 to "
-      "the 95 % "
-      "point over the seeds.</footer>\n</body>\n</html>\n";
+  out += "</div>\n";
+  end_page(out, "Times from switching on to the end. Bands from the 5 to the 95 % point over the seeds.");
   return out;
 }
 
