@@ -15,7 +15,8 @@ namespace forager::tools {
 int run_generate_command(const GenerateCommand& command) {
   const auto scene = boards::load_scene(command.scene);
   if (!scene) return complain(scene.error());
-  const auto written = boards::write_world_tags(*scene, command.seed, command.output);
+  const auto written = command.layout ? boards::write_world_layout(*scene, command.seed, command.output)
+                                      : boards::write_world_tags(*scene, command.seed, command.output);
   if (!written) return complain(written.error());
   const std::string line = fmt::format("{} tags in {}\n", *written, one_line(command.output));
   if (const auto said = write_output("-", line); !said) return complain(said.error());
@@ -33,6 +34,8 @@ void add_generate_command(CLI::App& app, int& exit_code) {
   generate->add_option("--seed", command->seed, "Places the tags")
       ->capture_default_str()
       ->check(WholeNumber());
+  generate->add_flag("--layout", command->layout,
+                     "As the scene lists its tags, wrong where it says so, instead of as they are");
   generate->callback([command, &exit_code] { exit_code = run_generate_command(*command); });
 }
 

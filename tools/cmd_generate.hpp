@@ -13,6 +13,7 @@ struct GenerateCommand {
   std::string scene;
   std::string output;
   std::uint64_t seed = 1;
+  bool layout = false;  // as the scene lists its tags instead of as they are
 };
 
 // Writes the tags of a scene's world into a tag file, for other programs or for another scene to name. Gives

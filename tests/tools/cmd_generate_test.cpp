@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <sstream>
+
 #include "boards/scene.hpp"
 #include "boards/world_builder.hpp"
 #include "tests/scratch_folder.hpp"
@@ -47,6 +50,25 @@ TEST_F(GenerateCommandTest, AnotherSceneFindsTheSameTagsInTheFile) {
     ASSERT_EQ(one.tags.epc_hex(i), other.tags.epc_hex(i));
     ASSERT_EQ(one.tags.position(i), other.tags.position(i));
   }
+}
+
+TEST_F(GenerateCommandTest, TheLayoutIsWrongWhereTheSceneSaysSo) {
+  store = folder.write("wrong.toml", std::string(kBare) +
+                                         "world.generate = { kind = \"square\", tags = 1000 }\n"
+                                         "world.mislabeled = 0.02\nworld.unlisted = 0.01\n");
+  ASSERT_EQ(run(folder.file("tags.csv")), kExitDone) << err;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(
+      run_generate_command({.scene = store, .output = folder.file("layout.csv"), .seed = 1, .layout = true}),
+      kExitDone);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "990 tags in " + folder.file("layout.csv") + "\n");
+  std::istringstream truth(folder.read("tags.csv"));
+  std::set<std::string> lines;
+  for (std::string line; std::getline(truth, line);) lines.insert(line);
+  std::istringstream list(folder.read("layout.csv"));
+  int wrong = 0;
+  for (std::string line; std::getline(list, line);) wrong += lines.contains(line) ? 0 : 1;
+  EXPECT_EQ(wrong, 20);
 }
 
 TEST_F(GenerateCommandTest, TheSeedDecides) {

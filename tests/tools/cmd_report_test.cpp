@@ -94,6 +94,25 @@ TEST_F(ReportCommand, CsvGoesToAFileOrTakesStdoutForItself) {
   EXPECT_EQ(out_, written);
 }
 
+TEST_F(ReportCommand, ALayoutTellsWhatIsNotWhereItShouldBe) {
+  std::ofstream(file("layout.csv")) << "epc,x,y,z\n30390001,1,2,1\n3039aaaa,4,2,1\n";
+  EXPECT_EQ(run({file("run.db"), "--layout", file("layout.csv")}), kExitDone);
+  EXPECT_NE(out_.find("0 of 2 in place, 0 elsewhere, 1 unheard, 1 not listed, 1 heard without a pose\n"),
+            std::string::npos)
+      << out_;
+  EXPECT_NE(out_.find("30390002  not listed\n"), std::string::npos) << out_;
+  EXPECT_EQ(run({file("run.db"), "--json", "--layout", file("layout.csv")}), kExitDone);
+  std::istringstream lines(out_);
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["type"], "layout");
+  EXPECT_EQ(nlohmann::json::parse(line)["unheard"], 1);
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["epc"], "30390002");
+  EXPECT_EQ(run({file("run.db"), "--layout", file("none.csv")}), kExitUnavailable);
+}
+
 TEST_F(ReportCommand, ErrorsAreOneLineWithTheRightExitCode) {
   EXPECT_EQ(run({file("none.db")}), kExitUnavailable);
   EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
