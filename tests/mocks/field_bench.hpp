@@ -5,18 +5,13 @@
 #include <set>
 #include <vector>
 
-#include "mocks/body.hpp"
 #include "mocks/gen2_field_parameters.hpp"
 #include "mocks/tag_field.hpp"
 #include "mocks/warehouse.hpp"
 #include "mocks/world.hpp"
+#include "tests/mocks/placed_body.hpp"
 
 namespace forager::mocks {
-
-struct PlacedBody final : TrueBody {
-  BodyState body;
-  [[nodiscard]] const BodyState& state() const override { return body; }
-};
 
 // A reader at rest 1.2 m above the floor with one antenna forward on port 1, and a world without tags.
 struct FieldBench {

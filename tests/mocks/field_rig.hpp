@@ -8,13 +8,9 @@
 #include "hal/units.hpp"
 #include "mocks/gen2_field.hpp"
 #include "mocks/store_plan.hpp"
+#include "tests/mocks/placed_body.hpp"
 
 namespace forager::mocks {
-
-struct PlacedBody final : TrueBody {
-  BodyState body;
-  [[nodiscard]] const BodyState& state() const override { return body; }
-};
 
 // A reader with four antennas carried through a world.
 struct FieldRig {

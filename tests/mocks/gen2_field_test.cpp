@@ -1,15 +1,13 @@
+// Who answers, and how often: the detection model as the round-level field draws it.
 #include "mocks/gen2_field.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <set>
-#include <string>
 
-#include "mocks/warehouse.hpp"
+#include "tests/mocks/round_field_fixture.hpp"
 
 namespace forager::mocks {
 namespace {
@@ -17,83 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using hal::Instant;
 using hal::Vec3;
-
-struct PlacedBody final : TrueBody {
-  BodyState body;
-  [[nodiscard]] const BodyState& state() const override { return body; }
-};
-
-class SimTagFieldTest : public ::testing::Test {
- protected:
-  SimTagFieldTest() {
-    body_.body.pose.position = {0.0, 0.0, 1.2};
-    settings_.ports = {{4, 30.0, -200.0}};
-    antennas_ = {{4, {}, 0.0, 0.0}};
-  }
-
-  // Identical tags, no fade, a reader that loses no time: what remains is the detection model.
-  void bare_physics() {
-    air_.spread_db = 0.0;
-    air_.rician_k_db = FrozenFade::kNoFade_db;
-    air_.singulation_s = air_.settle_s = air_.round_s = 0.0;
-    air_.t0_s = 1.0;
-    air_.r0_m = 2.0;
-  }
-
-  void four_antennas() {
-    antennas_ = {{4, {0.15, 0.0, 0.0}, 0.0, 0.0},
-                 {3, {0.0, 0.15, 0.0}, hal::kPi / 2.0, 0.0},
-                 {1, {-0.15, 0.0, 0.0}, hal::kPi, 0.0},
-                 {2, {0.0, -0.15, 0.0}, -hal::kPi / 2.0, 0.0}};
-    settings_.ports = {{4, 30.0, -80.0}, {3, 30.0, -80.0}, {1, 30.0, -80.0}, {2, 30.0, -80.0}};
-  }
-
-  // An aisle 15 m long with 11 boxes of 30 tags on each side.
-  void aisle() {
-    four_antennas();
-    EpcSequence epcs(1, 1);
-    hal::Random random(5);
-    for (const double side : {1.75, -1.75})
-      add_groups(world_, {.centre = {0.7, side, 1.0}, .tags = 30}, {1.36, 0.0, 0.0}, 11, epcs, random);
-  }
-
-  void tags_at(Vec3 relative, int count) {
-    for (int i = 0; i < count; ++i)
-      world_.tags.push_back({std::to_string(world_.tags.size()), body_.body.pose.position + relative});
-  }
-
-  std::vector<AirRead> listen(SimTagField& field, double seconds, double tick = 0.02) {
-    std::vector<AirRead> reads;
-    const Instant start = now_;
-    field.radio_on(settings_, now_);
-    for (int i = 1; i <= static_cast<int>(std::lround(seconds / tick)); ++i) {
-      now_ = start + hal::from_seconds(i * tick);
-      if (drive_) drive_(hal::to_seconds(now_ - start));
-      field.advance(now_, reads);
-    }
-    return reads;
-  }
-  std::vector<AirRead> listen(double seconds, double tick = 0.02, std::uint64_t seed = 9) {
-    EXPECT_TRUE(validate(air_, antennas_));
-    now_ = Instant{};
-    SimTagField field(world_, body_, antennas_, air_, seed);
-    return listen(field, seconds, tick);
-  }
-
-  static std::size_t unique(const std::vector<AirRead>& reads) {
-    std::set<std::uint32_t> tags;
-    for (const AirRead& r : reads) tags.insert(r.tag);
-    return tags.size();
-  }
-
-  World world_;
-  PlacedBody body_;
-  std::vector<AntennaMounting> antennas_;
-  AirParameters air_;
-  RadioSettings settings_;
-  Instant now_{};
-  std::function<void(double)> drive_;
-};
 
 TEST_F(SimTagFieldTest, HalfOfTheTagsAtR0AnswerWithinT0) {
   bare_physics();
@@ -171,75 +92,6 @@ TEST_F(SimTagFieldTest, OnTheMoveTheTotalsDoNotDependOnTheTick) {
   EXPECT_NEAR(totals[2], totals[0], 150.0);
 }
 
-TEST_F(SimTagFieldTest, AStaticReaderSaturates) {
-  aisle();
-  const auto reads = listen(400.0, 0.1);
-  std::set<std::uint32_t> early;
-  std::set<std::uint32_t> all;
-  for (const AirRead& r : reads) {
-    if (hal::to_seconds(r.at) < 200.0) early.insert(r.tag);
-    all.insert(r.tag);
-  }
-  EXPECT_LT(all.size(), 240U) << "of 660: most are out of reach for ever";
-  EXPECT_GT(all.size(), 100U);
-  EXPECT_LT(all.size() - early.size(), 12U) << "the second half of the time brings next to nothing";
-}
-
-TEST_F(SimTagFieldTest, HearsTrafficLikeTheRealThing) {
-  aisle();
-  body_.body.pose.position.x = 7.0;
-  const auto reads = listen(120.0);
-  const double rate = static_cast<double>(reads.size()) / 120.0;
-  EXPECT_GT(rate, 9.0);
-  EXPECT_LT(rate, 45.0);
-  std::vector<int> rssi;
-  std::vector<int> per_second(121);
-  for (const AirRead& r : reads) {
-    rssi.push_back(r.rssi_dbm);
-    ++per_second[static_cast<std::size_t>(hal::to_seconds(r.at))];
-    EXPECT_TRUE(r.rssi_dbm >= -83 && r.rssi_dbm <= -35) << r.rssi_dbm;
-    EXPECT_TRUE(r.phase_deg >= 0 && r.phase_deg < 180);
-  }
-  std::nth_element(rssi.begin(), rssi.begin() + static_cast<std::ptrdiff_t>(rssi.size() / 2), rssi.end());
-  EXPECT_TRUE(rssi[rssi.size() / 2] >= -77 && rssi[rssi.size() / 2] <= -68) << rssi[rssi.size() / 2];
-  EXPECT_LT(*std::max_element(per_second.begin(), per_second.end()), 174);
-}
-
-TEST_F(SimTagFieldTest, SessionsTradeRepeatsForNewTags) {
-  bare_physics();
-  air_.singulation_s = 1.0 / 300.0;
-  tags_at({0.6, 0.0, 0.0}, 600);
-  std::size_t total[3] = {};
-  std::size_t tags[3] = {};
-  for (int session = 0; session < 3; ++session) {
-    settings_.session = session;
-    const auto reads = listen(2.0);
-    total[session] = reads.size();
-    tags[session] = unique(reads);
-  }
-  // The air is full: S0 spends its replies on tags it knows, S1 on few, S2 on none.
-  EXPECT_GT(total[0], 380U);
-  EXPECT_LT(tags[0], tags[1]);
-  EXPECT_LE(tags[1], tags[2]);
-  EXPECT_EQ(total[2], tags[2]) << "S2 hears a powered tag once";
-  settings_.session = 2;
-  EXPECT_LE(listen(300.0, 0.1).size(), 600U);
-}
-
-TEST_F(SimTagFieldTest, S2TagsAnswerAgainAfterAnAbsence) {
-  bare_physics();
-  settings_.session = 2;
-  tags_at({1.0, 0.0, 0.0}, 50);
-  SimTagField field(world_, body_, antennas_, air_, 1);
-  EXPECT_EQ(listen(field, 60.0).size(), 50U);
-  // Out of reach for 1.5 s: no timer is shorter than 2 s.
-  drive_ = [this](double t) { body_.body.pose.position.x = t > 10.0 && t < 11.5 ? -30.0 : 0.0; };
-  EXPECT_EQ(listen(field, 60.0).size(), 0U);
-  // Out of reach for 25 s: no timer is longer than 20 s.
-  drive_ = [this](double t) { body_.body.pose.position.x = t > 10.0 && t < 35.0 ? -30.0 : 0.0; };
-  EXPECT_EQ(listen(field, 60.0).size(), 50U);
-}
-
 TEST_F(SimTagFieldTest, NothingIsHeardBehindOrBeyondThePowerUpLimit) {
   bare_physics();
   settings_.target = '*';
@@ -263,37 +115,6 @@ TEST_F(SimTagFieldTest, ReachFollowsTheForwardLink) {
   }
   EXPECT_NEAR(farthest[1], 4.0, 0.051);  // power-up limit 2, R0 2 m
   EXPECT_NEAR(farthest[0], 4.0 * std::pow(10.0, -6.0 / 20.0), 0.051);
-}
-
-TEST_F(SimTagFieldTest, TheSensitivityOfThePortHidesWeakReplies) {
-  aisle();
-  for (auto& p : settings_.ports) p.sensitivity_dbm = -65.0;
-  const auto reads = listen(60.0);
-  EXPECT_GT(reads.size(), 20U);
-  for (const AirRead& r : reads) ASSERT_GE(r.rssi_dbm, -65);
-}
-
-TEST_F(SimTagFieldTest, RepliesComeInOrderAndNeverFasterThanTheAirAllows) {
-  aisle();
-  air_.t0_s = 0.01;
-  body_.body.pose.position.x = 7.0;
-  const auto reads = listen(20.0);
-  EXPECT_GT(reads.size(), 1500U);
-  for (std::size_t i = 1; i < reads.size(); ++i)
-    ASSERT_GE(hal::to_seconds(reads[i].at - reads[i - 1].at), air_.singulation_s - 2e-9);
-}
-
-TEST_F(SimTagFieldTest, PhaseIsTheTwoWayDistance) {
-  bare_physics();
-  settings_.target = '*';
-  tags_at({1.3, 0.0, 0.0}, 1);
-  std::set<std::uint32_t> channels;
-  for (const AirRead& r : listen(60.0)) {
-    const double wavelength_m = 299792.458 / r.frequency_khz;
-    EXPECT_NEAR(r.phase_deg, std::fmod(720.0 * 1.3 / wavelength_m, 180.0), 0.51);
-    channels.insert(r.frequency_khz);
-  }
-  EXPECT_EQ(channels, (std::set<std::uint32_t>{865700, 866300, 866900, 867500}));
 }
 
 TEST_F(SimTagFieldTest, ObstaclesCostOnlyWhenAskedAndNotTheOwnShelf) {
