@@ -20,6 +20,7 @@ constexpr double kStep[kParameters] = {0.06, 0.4, 2.0};  // ln m, dB, dB
 constexpr double kLowest[kParameters] = {-3.0, 0.0, -10.0};
 constexpr double kHighest[kParameters] = {3.5, 12.0, 40.0};
 constexpr double kHopeless = 1e9;
+constexpr int kMostSteps = 6;
 
 using Point = std::array<double, kParameters>;
 using Matrix = std::array<std::array<double, kParameters>, kParameters>;
@@ -61,6 +62,38 @@ std::optional<Matrix> inverse(Matrix m) {
   return out;
 }
 
+double squares_of(const std::vector<double>& differences) {
+  double sum = 0.0;
+  for (const double d : differences) sum += d * d;
+  return sum;
+}
+
+// Where the squares would be least if the figures were linear, held back by `damping` of the information.
+std::optional<Point> levenberg(const Point& at, const std::vector<double>& here,
+                               const std::array<std::vector<double>, kParameters>& slopes, double damping) {
+  Matrix information{};
+  Point pull{};
+  for (std::size_t i = 0; i < kParameters; ++i)
+    for (std::size_t f = 0; f < here.size(); ++f) {
+      pull[i] -= slopes[i][f] * here[f] * kStep[i];
+      for (std::size_t j = 0; j < kParameters; ++j)
+        information[i][j] += slopes[i][f] * slopes[j][f] * kStep[i] * kStep[j];
+    }
+  double largest = 0.0;
+  for (std::size_t i = 0; i < kParameters; ++i) largest = std::max(largest, information[i][i]);
+  for (std::size_t i = 0; i < kParameters; ++i) information[i][i] += damping * largest;
+  const auto inverted = inverse(information);
+  if (!inverted) return std::nullopt;
+  Point next = at;
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    double shift = 0.0;
+    for (std::size_t j = 0; j < kParameters; ++j) shift += (*inverted)[i][j] * pull[j];
+    // Farther than this nothing is linear.
+    next[i] = std::clamp(at[i] + kStep[i] * std::clamp(shift, -8.0, 8.0), kLowest[i], kHighest[i]);
+  }
+  return next;
+}
+
 class Fit {
  public:
   explicit Fit(const PublishedFitOptions& options) : options_(options) {
@@ -91,6 +124,48 @@ class Fit {
     return out;
   }
 
+  // Derivatives of all figures at a point, by differences: forwards, or to both sides (twice the price).
+  hal::Result<std::array<std::vector<double>, kParameters>> slopes(const Point& at,
+                                                                   const std::vector<double>* here) {
+    std::array<std::vector<double>, kParameters> out;
+    for (std::size_t i = 0; i < kParameters; ++i) {
+      Point up = at;
+      Point down = at;
+      up[i] = std::min(up[i] + kStep[i], kHighest[i]);
+      if (here == nullptr || up[i] == at[i]) down[i] = std::max(down[i] - kStep[i], kLowest[i]);
+      const auto above = up == at ? hal::Result<std::vector<double>>(*here) : differences(up);
+      if (!above) return hal::fail(above.error());
+      const auto below = down == at ? hal::Result<std::vector<double>>(*here) : differences(down);
+      if (!below) return hal::fail(below.error());
+      for (std::size_t f = 0; f < above->size(); ++f)
+        out[i].push_back(((*above)[f] - (*below)[f]) / (up[i] - down[i]));
+    }
+    return out;
+  }
+
+  // From afar: Levenberg's steps, as long as one makes the squares a tenth smaller.
+  hal::Result<Point> approach(Point at, std::vector<double> here) {
+    for (int step = 0; step < kMostSteps && evaluations_ + 5 < options_.evaluations; ++step) {
+      const auto tilt = slopes(at, &here);
+      if (!tilt) return hal::fail(tilt.error());
+      double damping = 0.01;
+      double share = 1.0;
+      for (int attempt = 0; attempt < 3; ++attempt, damping *= 10.0) {
+        const auto next = levenberg(at, here, *tilt, damping);
+        if (!next) break;
+        auto there = differences(*next);
+        if (!there) return hal::fail(std::move(there).error());
+        share = squares_of(*there) / std::max(squares_of(here), 1e-9);
+        if (share >= 1.0) continue;
+        at = *next;
+        here = std::move(*there);
+        break;
+      }
+      if (share > 0.9) break;
+    }
+    return at;
+  }
+
   hal::Result<Point> search(const Point& from) {
     std::optional<hal::Error> trouble;
     const auto squares = [&](const std::vector<double>& x) {
@@ -100,14 +175,14 @@ class Fit {
         trouble = differences_now.error();
         return kHopeless;
       }
-      double sum = 0.0;
-      for (const double d : *differences_now) sum += d * d;
+      double sum = squares_of(*differences_now);
       for (std::size_t i = 0; i < kParameters; ++i)
         sum += 1e3 * std::max({0.0, kLowest[i] - x[i], x[i] - kHighest[i]});
       return sum;
     };
-    const auto found = simplex_search(squares, {from.begin(), from.end()},
-                                      {std::begin(kStep), std::end(kStep)}, {options_.evaluations, 0.5});
+    const auto found =
+        simplex_search(squares, {from.begin(), from.end()}, {std::begin(kStep), std::end(kStep)},
+                       {std::max(options_.evaluations - evaluations_, 4), 0.5});
     if (trouble) return hal::fail(std::move(*trouble));
     Point best{};
     for (std::size_t i = 0; i < kParameters; ++i) best[i] = std::clamp(found.at[i], kLowest[i], kHighest[i]);
@@ -131,22 +206,11 @@ hal::Result<Point> half_widths(Fit& fit, const Point& best, const std::vector<do
     return hal::fail(hal::ErrorCode::refused, "published totals", "tell r0_m, spread_db, rician_k_db",
                      fmt::format("{} figures do not tell {} parameters", residuals.size(), kParameters),
                      "Fit to more runs.");
-  std::array<std::vector<double>, kParameters> slopes;
-  for (std::size_t i = 0; i < kParameters; ++i) {
-    Point up = best;
-    Point down = best;
-    up[i] = std::min(up[i] + kStep[i], kHighest[i]);
-    down[i] = std::max(down[i] - kStep[i], kLowest[i]);
-    const auto above = fit.differences(up);
-    if (!above) return hal::fail(above.error());
-    const auto below = fit.differences(down);
-    if (!below) return hal::fail(below.error());
-    for (std::size_t f = 0; f < above->size(); ++f)
-      slopes[i].push_back(((*above)[f] - (*below)[f]) / (up[i] - down[i]));
-  }
+  const auto tilt = fit.slopes(best, nullptr);
+  if (!tilt) return hal::fail(tilt.error());
+  const auto& slopes = *tilt;
   Matrix information{};
-  double squares = 0.0;
-  for (const double r : residuals) squares += r * r;
+  const double squares = squares_of(residuals);
   for (std::size_t i = 0; i < kParameters; ++i)
     for (std::size_t j = 0; j < kParameters; ++j)
       for (std::size_t f = 0; f < residuals.size(); ++f)
@@ -174,12 +238,18 @@ hal::Result<PublishedFit> fit_published(const PublishedFitOptions& options) {
   const auto scene = load_scene(fmt::format("{}/{}.toml", options.folder, fit.runs().front()));
   if (!scene) return hal::fail(scene.error());
   const SceneRadio& radio = scene->world.radio;
-  const Point from{std::log(radio.r0_m), radio.spread_db, std::min(radio.rician_k_db, kHighest[2])};
+  PublishedFit result;
+  result.started = options.start.value_or(
+      CalibrationParameters{radio.r0_m, radio.spread_db, std::min(radio.rician_k_db, kHighest[2])});
+  Point from{std::log(result.started.r0_m), result.started.spread_db, result.started.rician_k_db};
+  for (std::size_t i = 0; i < kParameters; ++i) from[i] = std::clamp(from[i], kLowest[i], kHighest[i]);
   const auto started = fit.differences(from);
   if (!started) return hal::fail(started.error());
-  PublishedFit result;
   result.started_rms_points = fit.last().rms_points().value_or(0.0);
-  const auto best = options.evaluations > 1 ? fit.search(from) : hal::Result<Point>(from);
+  const bool searching = options.evaluations > 1;
+  const auto near = searching && options.start ? fit.approach(from, *started) : hal::Result<Point>(from);
+  if (!near) return hal::fail(near.error());
+  const auto best = searching ? fit.search(*near) : near;
   if (!best) return hal::fail(best.error());
   const auto residuals = fit.differences(*best);
   if (!residuals) return hal::fail(residuals.error());

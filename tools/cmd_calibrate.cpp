@@ -53,6 +53,8 @@ int fit_published(const CalibrateCommand& command) {
   options.folder = command.folder;
   options.seeds = command.seeds;
   options.evaluations = static_cast<int>(command.evaluations);
+  if (command.start.size() == 3)
+    options.start = boards::CalibrationParameters{command.start[0], command.start[1], command.start[2]};
   const bool terminal = isatty(STDERR_FILENO) == 1;
   if (terminal)
     options.progress = [](int evaluation, double rms) {
@@ -116,6 +118,11 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
       ->add_option("--evaluations", command->evaluations, "With --published: parameter sets to try at most")
       ->capture_default_str()
       ->check(WholeNumber(1, 100000));
+  calibrate
+      ->add_option("--start", command->start,
+                   "With --published: R0 [m], spread [dB] and K [dB] to start from instead of the scenes'")
+      ->expected(3)
+      ->check(NumberBetween(0.0, 40.0));
   calibrate->add_option("--simulate", command->simulate,
                         "Write a simulated recording of the scene to this folder");
   calibrate->add_option("--seconds", command->seconds, "With --simulate: its length")

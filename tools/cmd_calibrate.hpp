@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -24,6 +25,7 @@ struct CalibrateCommand {
   std::string folder = "scenes";
   std::uint64_t seeds = 3;
   std::uint64_t evaluations = 60;
+  std::vector<double> start;  // R0 in m, spread and K in dB; empty: what the scenes say
 
   std::string simulate;  // folder: write a simulated recording there instead
   double seconds = 120.0;

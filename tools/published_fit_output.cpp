@@ -21,8 +21,11 @@ std::string published_fit_table(const PublishedFit& fit) {
   std::string out = fmt::format("{:<14}{:>10} {:<4}{:>20}\n", "parameter", "value", "", "95 % interval");
   for (const FittedParameter& p : fit.parameters)
     out += fmt::format("{:<14}{:>10.3f} {:<4}{:>20}\n", p.name, p.value, p.unit, interval_text(p));
-  out += fmt::format("{} parameter sets tried; the scenes' own came to {:.2f} points\n\n", fit.evaluations,
-                     fit.started_rms_points);
+  out += fmt::format(
+      "{} parameter sets tried, from r0_m {:.3f}, spread_db {:.3f}, rician_k_db {:.3f}, which came to {:.2f} "
+      "points\n\n",
+      fit.evaluations, fit.started.r0_m, fit.started.spread_db, fit.started.rician_k_db,
+      fit.started_rms_points);
   return out + reproduction_table(fit.reproduction);
 }
 
@@ -36,6 +39,14 @@ std::string published_fit_json(const PublishedFit& fit) {
                 {"unit", p.unit}}
                .dump() +
            "\n";
+  out += Json{{"start",
+               {{"r0_m", fit.started.r0_m},
+                {"spread_db", fit.started.spread_db},
+                {"rician_k_db", fit.started.rician_k_db},
+                {"rms_points", fit.started_rms_points}}},
+              {"evaluations", fit.evaluations}}
+             .dump() +
+         "\n";
   return out + reproduction_json(fit.reproduction);
 }
 
