@@ -20,7 +20,8 @@ LibusbPipe::LibusbPipe(libusb_context* context, libusb_device_handle* handle, st
       handle_(handle),
       device_(std::move(device)),
       endpoint_(endpoint),
-      slots_(config.transfers) {
+      owned_(std::make_unique<std::vector<Slot>>(config.transfers)),
+      slots_(*owned_) {
   const auto ended = [](libusb_transfer* transfer) {
     static_cast<Slot*>(transfer->user_data)->state = State::ended;
   };
@@ -40,7 +41,7 @@ LibusbPipe::~LibusbPipe() {
     if (slot.state == State::under_way) libusb_cancel_transfer(slot.transfer);
   // What the kernel does not give back must not be freed: it would write into memory of others.
   if (!wait(kCancel)) {
-    static_cast<void>(new std::vector<Slot>(std::move(slots_)));
+    static_cast<void>(owned_.release());
     return;
   }
   for (Slot& slot : slots_) libusb_free_transfer(slot.transfer);

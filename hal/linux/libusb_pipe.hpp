@@ -55,7 +55,8 @@ class LibusbPipe {
   libusb_device_handle* handle_;
   std::string device_;
   UsbEndpointFacts endpoint_;
-  std::vector<Slot> slots_;
+  std::unique_ptr<std::vector<Slot>> owned_;  // let go of where the kernel may still write into it
+  std::vector<Slot>& slots_;
   std::size_t oldest_ = 0;
   int failed_ = 0;  // LIBUSB_ERROR_ that came with the last bytes
 };
