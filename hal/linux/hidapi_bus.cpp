@@ -4,6 +4,8 @@
 #include <hidapi.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 #include "hal/linux/hid_bus.hpp"
@@ -16,7 +18,7 @@ namespace {
 std::string utf8(const wchar_t* text) {
   std::string bytes;
   for (; text != nullptr && *text != L'\0'; ++text) {
-    const auto code = static_cast<std::uint32_t>(*text);
+    const auto code = std::bit_cast<std::uint32_t>(*text);  // of Linux: 32 bits, signed or not
     const auto tail = [&](unsigned shift) { bytes += static_cast<char>(0x80U | (code >> shift & 0x3FU)); };
     if (code < 0x80U) {
       bytes += static_cast<char>(code);
