@@ -64,9 +64,8 @@ std::string why_silent(const SilenceFacts& facts) {
   const ReadPlan& plan = facts.plan;
   if (silences(plan) && facts.tags_before > 0)
     return fmt::format(
-        "session {} keeps tags silent {} once they were read, here {}; session S0 or target AB reads "
-        "them again",
-        to_string(plan.session), flag_time(plan.session), facts.tags_before);
+        "session {} keeps tags silent {} once they were read; session S0 or target AB reads them again",
+        to_string(plan.session), flag_time(plan.session));
   const double power_dbm = strongest_power(plan);
   if (relative_reach(power_dbm) <= kLowReach)
     return fmt::format("power may be too low: {:g} dBm reaches {:.0f} % as far as 30 dBm", power_dbm,

@@ -63,7 +63,7 @@ class MavlinkListen {
       step(now);
       return true;
     });
-    output_.end(moment(clock.now()));
+    output_.end(moment(clock.now(), true));
     if (monitor_.autopilot() != nullptr) return kExitDone;
     fmt::print(stderr, "forager: {}: {}\n", bench_.line().name(), one_line(why()));
     return kExitFailure;
@@ -79,7 +79,7 @@ class MavlinkListen {
     });
     if (!command_.silent) speak(now);
     if (now - last_moment_ < hal::from_seconds(command_.every_s)) return;
-    if (!command_.raw) output_.moment(moment(now));
+    if (!command_.raw) output_.moment(moment(now, false));
     monitor_.next_interval();
     last_moment_ = now;
   }
@@ -118,8 +118,8 @@ class MavlinkListen {
                                .parser = link_.parser_stats(),
                                .autopilot_heard = monitor_.autopilot() != nullptr});
   }
-  [[nodiscard]] MavlinkMoment moment(hal::Instant now) const {
-    const bool none = monitor_.interval_frames() == 0 || monitor_.autopilot() == nullptr;
+  [[nodiscard]] MavlinkMoment moment(hal::Instant now, bool whole) const {
+    const bool none = monitor_.autopilot() == nullptr || (!whole && monitor_.interval_frames() == 0);
     return {now, now - last_moment_, link_, monitor_, none ? why() : std::string()};
   }
 
