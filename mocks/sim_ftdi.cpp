@@ -119,20 +119,19 @@ bool SimFtdi::set_format(std::uint16_t value) {
   return true;
 }
 
+// The high byte says which of the two lines are meant, the low byte how they shall be.
+// The high byte says which of the two lines are meant, the low byte their levels.
 bool SimFtdi::set_modem(std::uint16_t value) {
-  switch (value) {
-    case kDtrHigh:
-    case kDtrLow:
-      dtr_ = value == kDtrHigh;
-      uart_.set_dtr(dtr_);
-      return true;
-    case kRtsHigh:
-    case kRtsLow:
-      rts_ = value == kRtsHigh;
-      return true;
-    default:
-      return false;
+  constexpr unsigned kDtr = 1;
+  constexpr unsigned kRts = 2;
+  const unsigned meant = value >> 8U;
+  if (meant == 0 || meant > (kDtr | kRts) || (value & 0xFFU & ~meant) != 0) return false;
+  if ((meant & kRts) != 0) rts_ = (value & kRts) != 0;
+  if ((meant & kDtr) != 0) {
+    dtr_ = (value & kDtr) != 0;
+    uart_.set_dtr(dtr_);
   }
+  return true;
 }
 
 bool SimFtdi::control_out(const hal::UsbRequest& request, std::span<const std::byte> bytes) {

@@ -17,7 +17,7 @@ key=$({ aarch64-linux-gnu-gcc-12 --version && cat "$here"/{modules/*,aarch64_bui
 if [ -z "$version" ]; then kept "arm64-$key"; fi
 folder=$cache/$version-arm64-$key
 begin arm64 "$folder"
-release=${image#linux-image-}                             # 6.1.0-56-arm64
+release=${image#linux-image-}         # 6.1.0-56-arm64
 series=$(cut -d. -f1,2 <<<"$version") # 6.1
 fetch "$image:arm64=$version" "linux-headers-$release:arm64=$version" "linux-headers-${release%-arm64}-common=$version" \
   "linux-kbuild-$series=$version" "linux-source-$series=$version" busybox-static:arm64
@@ -26,7 +26,7 @@ say "unpacking"
 dpkg-deb --fsys-tarfile "$image"_*.deb |
   tar -x --wildcards './boot/vmlinuz*' '*/kernel/drivers/virtio/*' '*/kernel/fs/9p/*' '*/kernel/net/9p/*' \
     '*/kernel/fs/netfs/*' '*/kernel/fs/fscache/*' '*/kernel/fs/configfs/*' '*/kernel/drivers/i2c/i2c-dev.ko' \
-    '*/kernel/drivers/hid/uhid.ko' '*/modules.builtin*' '*/modules.order'
+    '*/modules.builtin*' '*/modules.order'
 for deb in linux-headers-*.deb linux-kbuild-*.deb busybox-static_*.deb; do dpkg-deb -x "$deb" .; done
 mkdir own
 dpkg-deb --fsys-tarfile linux-source-*.deb | tar -xO --wildcards '*/linux-source-*.tar.xz' | xz -dc -T0 |
@@ -49,7 +49,7 @@ mkdir -p result/modules "lib/modules/$release/own"
 cp own/*.ko "lib/modules/$release/own/"
 depmod -b "$work" "$release"
 # In the order in which insmod takes them.
-for module in virtio_pci 9pnet_virtio 9p configfs i2c-dev uhid gpio-sim i2c_sim pwm_sim; do
+for module in virtio_pci 9pnet_virtio 9p configfs i2c-dev gpio-sim i2c_sim pwm_sim; do
   modprobe -d "$work" -S "$release" --show-depends "$module"
 done | sed -n 's/^insmod \([^ ]*\).*/\1/p' | awk '!seen[$0]++' >needed
 while read -r path; do

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
 
 #include "tests/hal/digital_contract.hpp"
@@ -114,7 +115,11 @@ TEST_F(GpioOnAKernel, ListsEveryLineAndItsHolder) {
   const auto held = hal::open_gpio_out(line("BRAKE_LEFT"));
   const auto facts = hal::list_gpio();
   ASSERT_TRUE(facts) << describe(facts.error());
-  ASSERT_EQ(9U, facts->size());
+  const auto ours = std::count_if(facts->begin(), facts->end(), [](const hal::GpioLineFacts& line) {
+    return line.label == "pinctrl-bench" ||
+           line.label == "another-chip";  // the machine may have its own, too
+  });
+  EXPECT_EQ(9, ours);
   const auto find = [&](const std::string& name) {
     for (const hal::GpioLineFacts& line : *facts)
       if (line.name == name && line.label == "pinctrl-bench") return line;
@@ -149,7 +154,14 @@ TEST_F(GpioOnAKernel, NobodyMayNotAndTheGroupMay) {
 // in virtual time the stamps are those of the ticks, to the nanosecond.
 constexpr Duration kTick = 10ms;
 
-Instant next_tick() { return now() + 2 * kTick - now().time_since_epoch() % kTick; }
+Instant next_tick() {
+  const Instant moment = now();
+  return moment + 2 * kTick - moment.time_since_epoch() % kTick;
+}
+
+// Reading the clock costs virtual time, so stamps are exact once nobody else has anything to do: udev with a
+// new chip, the kernel with a new line.
+void let_others_finish() { sleep_until(now() + 1s); }
 
 void drive_for_stamp(const GpioSim& sim, unsigned line, bool high, Instant stamp) {
   sleep_until(stamp - kTick / 2);
@@ -160,6 +172,7 @@ TEST(GpioInVirtualTime, EdgesAreStampedToTheNanosecondHoweverLongNobodyLooks) {
   GpioSim sim("bench", {{"IN"}});
   const auto in =
       hal::open_gpio_edges({.chip = "bench", .line = "IN", .edges = hal::GpioEdges::both}).value();
+  let_others_finish();
   const Instant start = next_tick();
   for (int i = 0; i < 10; ++i) drive_for_stamp(sim, 0, i % 2 == 0, start + i * 20ms);
   sleep_until(start + 600s);
@@ -215,14 +228,14 @@ class SimRig final : public hal::contract::DigitalRig {
   void open() {
     out_ = hal::open_gpio_out({.chip = "bench", .line = "OUT", .active_low = true}).value();
     sim_.drive(1, true);  // inactive
-    in_ = std::make_unique<Slowed>(
-        hal::open_gpio_edges(
-            {.chip = "bench", .line = "IN", .active_low = true, .edges = hal::GpioEdges::both})
-            .value(),
-        origin_);
+    auto in = hal::open_gpio_edges(
+        {.chip = "bench", .line = "IN", .active_low = true, .edges = hal::GpioEdges::both});
+    let_others_finish();
+    origin_ = next_tick();
+    in_ = std::make_unique<Slowed>(std::move(in).value(), origin_);
   }
   GpioSim sim_{"bench", {{"OUT"}, {"IN"}}};
-  Instant origin_ = next_tick();
+  Instant origin_{};
   std::unique_ptr<hal::DigitalOut> out_;
   std::unique_ptr<hal::EdgeIn> in_;
 };

@@ -50,7 +50,7 @@ TEST(HidOnAKernel, NobodyMayLookButNotOpen) {
   std::string refused;
   EXPECT_TRUE(eventually([&] {
     refused = as_nobody({}, try_it);
-    return refused.find("permission: ") == 0;
+    return refused.starts_with("no permission: hid 1209:0002");
   })) << refused;
   EXPECT_THAT(refused, HasSubstr("99-forager.rules"));
 }

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace forager::kernel {
@@ -54,8 +55,11 @@ hal::Result<> carry_out(hal::I2c& wires, const Request& request, std::span<const
 
 }  // namespace
 
-I2cBridge::I2cBridge(hal::I2c& wires)
-    : wires_(wires), device_(::open("/dev/i2c-sim", O_RDWR | O_CLOEXEC)), stop_(::eventfd(0, EFD_CLOEXEC)) {
+I2cBridge::I2cBridge(hal::I2c& wires, std::function<void()> before)
+    : wires_(wires),
+      before_(std::move(before)),
+      device_(::open("/dev/i2c-sim", O_RDWR | O_CLOEXEC)),
+      stop_(::eventfd(0, EFD_CLOEXEC)) {
   if (device_ < 0 || stop_ < 0) {
     ADD_FAILURE() << "/dev/i2c-sim: " << std::strerror(errno);
     return;
@@ -82,6 +86,7 @@ void I2cBridge::serve() {
 void I2cBridge::serve_one() {
   std::array<std::byte, sizeof(Request) + 2 * kLongest> room{};
   if (::read(device_, room.data(), room.size()) < static_cast<ssize_t>(sizeof(Request)) || hangs_) return;
+  if (before_) before_();
   Request request{};
   std::memcpy(&request, room.data(), sizeof request);
   std::size_t to_send = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <thread>
 
 #include "hal/i2c.hpp"
@@ -13,7 +14,8 @@ namespace forager::kernel {
 // adapter is unplugged.
 class I2cBridge {
  public:
-  explicit I2cBridge(hal::I2c& wires);
+  // `before`: called before each transfer, to let emulated chips know the time.
+  explicit I2cBridge(hal::I2c& wires, std::function<void()> before = {});
   ~I2cBridge();
   I2cBridge(const I2cBridge&) = delete;
   I2cBridge& operator=(const I2cBridge&) = delete;
@@ -26,6 +28,7 @@ class I2cBridge {
   void serve_one();
 
   hal::I2c& wires_;
+  std::function<void()> before_;
   int device_ = -1;
   int stop_ = -1;
   std::atomic<bool> hangs_ = false;

@@ -32,6 +32,8 @@ hal::Result<StreamState> opened(hal::ByteStream& port) {
 
 class SerialOnAKernel : public testing::Test {
  protected:
+  // The gadget's end is no line, and knows these settings only.
+  static constexpr hal::SerialSettings kGadget{.baud = 9600};
   std::unique_ptr<hal::SerialPort> port(const std::string& device, hal::SerialSettings line = {}) {
     return hal::open_serial_port({.device = device, .line = line}, *clock_);
   }
@@ -41,7 +43,7 @@ class SerialOnAKernel : public testing::Test {
 
 TEST_F(SerialOnAKernel, BytesCrossUsbBothWaysAtAnyRate) {
   const auto host = port(gadget_.host_end(), {.baud = 31250, .parity = hal::Parity::even, .stop_bits = 2});
-  const auto device = port(gadget_.device_end());
+  const auto device = port(gadget_.device_end(), kGadget);
   const auto host_state = opened(*host);
   ASSERT_TRUE(host_state) << describe(host_state.error());
   ASSERT_TRUE(opened(*device));
@@ -50,6 +52,14 @@ TEST_F(SerialOnAKernel, BytesCrossUsbBothWaysAtAnyRate) {
   EXPECT_EQ("ping", read_text(*device, 4));
   ASSERT_EQ(4U, device->write(bytes_of("pong")).value());
   EXPECT_EQ("pong", read_text(*host, 4));
+}
+
+TEST_F(SerialOnAKernel, ARateTheAdapterDoesNotTakeIsNoRateOpened) {
+  const auto device = port(gadget_.device_end(), {.baud = 115200});
+  const auto refused = opened(*device);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(ErrorCode::unsupported, refused.error().code);
+  EXPECT_THAT(describe(refused.error()), HasSubstr("9600"));
 }
 
 TEST_F(SerialOnAKernel, APortHasOneUserWhoIsNamed) {
@@ -76,7 +86,7 @@ TEST_F(SerialOnAKernel, APulledPlugIsNoticedAndAPortThatComesBackOpens) {
   gadget_.plug_in();
   const auto again = opened(*host);
   ASSERT_TRUE(again) << describe(again.error());
-  const auto device = port(gadget_.device_end());
+  const auto device = port(gadget_.device_end(), kGadget);
   ASSERT_TRUE(opened(*device));
   ASSERT_EQ(5U, host->write(bytes_of("again")).value());
   EXPECT_EQ("again", read_text(*device, 5));
@@ -112,7 +122,7 @@ class GadgetRig final : public hal::contract::StreamRig {
   std::unique_ptr<hal::SerialPort> host_ =
       hal::open_serial_port({.device = SerialGadget::host_end()}, *clock_);
   std::unique_ptr<hal::SerialPort> device_ =
-      hal::open_serial_port({.device = SerialGadget::device_end()}, *clock_);
+      hal::open_serial_port({.device = SerialGadget::device_end(), .line = {.baud = 9600}}, *clock_);
 };
 
 }  // namespace

@@ -99,9 +99,9 @@ UsbPlug::~UsbPlug() {
 void UsbPlug::serve() {
   pollfd kernel{socket_, POLLIN, 0};
   while (true) {
-    // What the device does not take now it is asked again a frame later.
-    const int waiting = ::poll(&kernel, 1, waiting_.empty() ? -1 : 1);
+    const int waiting = ::poll(&kernel, 1, 1);  // a frame of the bus, about
     const auto held = lock();
+    if (waiting == 0) device_.start_of_frame();
     if (waiting > 0 && !take_request()) return;
     move_packets();
   }
