@@ -119,7 +119,6 @@ bool SimFtdi::set_format(std::uint16_t value) {
   return true;
 }
 
-// The high byte says which of the two lines are meant, the low byte how they shall be.
 // The high byte says which of the two lines are meant, the low byte their levels.
 bool SimFtdi::set_modem(std::uint16_t value) {
   constexpr unsigned kDtr = 1;

@@ -172,6 +172,25 @@ TEST(Ftdi, AnOverrunIsCountedAndWhatCameIsKept) {
   EXPECT_EQ(1U, port->errors().overruns);
 }
 
+TEST(SimFtdi, TakesBothModemLinesInOneRequestAndRefusesWhatIsNotDeclared) {
+  mocks::MemoryStreamPair line("rs232", mocks::MemoryStreamKind::bytes);
+  mocks::SimFtdi chip(line.near());
+  const auto ask = [&](std::uint8_t request, std::uint16_t value, std::uint16_t index = 0) {
+    return chip.control_out({.request = request, .value = value, .index = index}, {});
+  };
+  EXPECT_TRUE(ask(ftdi::kSetModemControl, 0x0303));  // as ftdi_sio of Linux does
+  EXPECT_TRUE(chip.dtr() && chip.rts());
+  EXPECT_TRUE(ask(ftdi::kSetModemControl, ftdi::kRtsLow));
+  EXPECT_TRUE(chip.dtr() && !chip.rts());
+  EXPECT_FALSE(ask(ftdi::kSetModemControl, 0x0001)) << "no line is meant";
+  EXPECT_FALSE(ask(ftdi::kSetModemControl, 0x0404));
+  EXPECT_FALSE(ask(ftdi::kSetLatencyTimer, 0));
+  EXPECT_FALSE(ask(ftdi::kSetData, 9));
+  EXPECT_FALSE(ask(ftdi::kSetBaudRate, 0x4000)) << "an eighth of nothing";
+  EXPECT_FALSE(ask(ftdi::kReset, 3));
+  EXPECT_FALSE(ask(0x90, 0)) << "its memory is not declared";
+}
+
 TEST(Ftdi, AChipOfAnotherKindIsLeftAlone) {
   mocks::MemoryStreamPair line("rs232", mocks::MemoryStreamKind::bytes);
   mocks::SimFtdi old(line.near(), {.release = 0x0200});
