@@ -30,7 +30,7 @@ ModbusCharger::ModbusCharger(hal::Modbus& bus, ModbusChargerConfig config)
       name_(fmt::format("charger on {} unit {}", bus.name(), config_.unit)) {}
 
 hal::Result<> ModbusCharger::update(hal::Instant now) {
-  const auto asked = ask(now);
+  auto asked = ask(now);
   const bool wanted = wanted_until_ && now < *wanted_until_;
   const bool on = wanted && !stale(now) && reading_->docked && !reading_->fault;
   // Off is said even when the question failed: the answer may be what is broken.
