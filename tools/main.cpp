@@ -32,6 +32,7 @@
 #include "tools/cmd_report.hpp"
 #include "tools/cmd_reproduce.hpp"
 #include "tools/cmd_run.hpp"
+#include "tools/cmd_selftest.hpp"
 #include "tools/cmd_serial.hpp"
 #include "tools/cmd_servo.hpp"
 #include "tools/cmd_stress.hpp"
@@ -74,6 +75,7 @@ int run_command(int argc, char** argv) {
   add_drive_command(app, exit_code);
   add_emulate_command(app, exit_code);
   add_doctor_command(app, exit_code);
+  add_selftest_command(app, exit_code);
   add_gpio_command(app, exit_code);
   add_pwm_command(app, exit_code);
   add_i2c_command(app, exit_code);
