@@ -16,7 +16,8 @@ using testing::HasSubstr;
 class SocketGuard : public SocketTest {};
 
 std::string reader_state(const ProgramResult& so_far) {
-  return last_event(so_far.out, "status").value("text", std::string());
+  const Json status = last_event(so_far.out, "status");
+  return status.is_null() ? std::string() : status.value("text", std::string());
 }
 
 TEST_F(SocketGuard, StopsTheReaderOfAMissionThatWasKilled) {
