@@ -1,16 +1,15 @@
 // The functions of libusb 1.0 that the backend calls, over an emulated bus. Defined in the test program, they
-// come before those of the library.
+// come before those of the library. Transfers and events are in fake_libusb_transfers.cpp.
 #include "tests/hal/linux/usb/fake_libusb.hpp"
 
 #include <fmt/format.h>
 #include <libusb.h>
 
-#include <algorithm>
-#include <array>
-#include <deque>
 #include <memory>
 #include <utility>
 #include <vector>
+
+#include "tests/hal/linux/usb/fake_libusb_types.hpp"
 
 namespace {
 
@@ -18,7 +17,6 @@ using forager::hal::ErrorCode;
 using forager::hal::UsbDeviceFacts;
 namespace fake = forager::hal::fake;
 
-constexpr std::size_t kPacket = 64;
 constexpr forager::hal::Duration kFrame = std::chrono::milliseconds(1);
 
 class Text final : public fake::Node {
@@ -38,7 +36,31 @@ std::unique_ptr<fake::Libusb>& instance() {
   return libusb;
 }
 
-int error_of(const forager::hal::Error& error) {
+// Devices by path; holds one reference of each.
+struct Known {
+  Known() = default;
+  ~Known() { clear(); }
+  Known(const Known&) = delete;
+  Known& operator=(const Known&) = delete;
+  void clear() {
+    for (const auto& [path, device] : devices) libusb_unref_device(device);
+    devices.clear();
+  }
+  std::map<std::string, libusb_device*> devices;
+};
+Known known;  // NOLINT
+
+std::string& driver_of(const libusb_device_handle* handle, int interface) {
+  return fake::libusb().drivers[fmt::format("{}:{}", handle->path, interface)];
+}
+
+}  // namespace
+
+namespace forager::hal::fake {
+
+Libusb& libusb() { return *instance(); }
+
+int libusb_error_of(const Error& error) {
   switch (error.code) {
     case ErrorCode::disconnected:
       return LIBUSB_ERROR_NO_DEVICE;
@@ -57,140 +79,26 @@ int error_of(const forager::hal::Error& error) {
   }
 }
 
-int status_of(int error) {
-  switch (error) {
-    case LIBUSB_ERROR_NO_DEVICE:
-      return LIBUSB_TRANSFER_NO_DEVICE;
-    case LIBUSB_ERROR_PIPE:
-      return LIBUSB_TRANSFER_STALL;
-    case LIBUSB_ERROR_OVERFLOW:
-      return LIBUSB_TRANSFER_OVERFLOW;
-    default:
-      return LIBUSB_TRANSFER_ERROR;
-  }
-}
-
-struct Submitted {
-  libusb_transfer* transfer;
-  std::size_t sent = 0;
-  bool cancelled = false;
-};
-std::deque<Submitted> submitted;  // NOLINT: libusb itself keeps state like this
-
-struct Listener {
-  libusb_hotplug_callback_fn call = nullptr;
-  void* user = nullptr;
-};
-Listener listener;  // NOLINT
-
-}  // namespace
-
-struct libusb_context {
-  int unused = 0;
-};
-struct libusb_device {
-  explicit libusb_device(UsbDeviceFacts what) : facts(std::move(what)) {}
-  UsbDeviceFacts facts;
-  int references = 1;
-  std::vector<std::vector<libusb_endpoint_descriptor>> endpoints;
-  std::vector<libusb_interface_descriptor> settings;
-  std::vector<libusb_interface> interfaces;
-  libusb_config_descriptor config{};
-};
-struct libusb_device_handle {
-  std::unique_ptr<forager::hal::UsbDevice> device;
-  std::string path;
-};
-
-namespace {
-
-// Devices by path; holds one reference of each.
-struct Known {
-  Known() = default;
-  ~Known() { clear(); }
-  Known(const Known&) = delete;
-  Known& operator=(const Known&) = delete;
-  void clear() {
-    for (const auto& [path, device] : devices) libusb_unref_device(device);
-    devices.clear();
-  }
-  std::map<std::string, libusb_device*> devices;
-};
-Known known;  // NOLINT
-
-libusb_device* device_at(const UsbDeviceFacts& facts) {
+libusb_device* libusb_device_at(const UsbDeviceFacts& facts) {
   auto& device = known.devices[facts.path];
   if (device == nullptr) device = new libusb_device(facts);
   return device;
 }
 
-bool plugged(const std::string& path) { return !fake::libusb().usb.devices({.path = path}).value().empty(); }
-
-std::string& driver_of(const libusb_device_handle* handle, int interface) {
-  return fake::libusb().drivers[fmt::format("{}:{}", handle->path, interface)];
+void forget_libusb_device(const std::string& path) {
+  const auto found = known.devices.find(path);
+  if (found == known.devices.end()) return;
+  libusb_unref_device(found->second);
+  known.devices.erase(found);
 }
 
-// One round of the controller: what happens to a transfer in a frame. True: it has ended.
-bool serve(Submitted& each) {
-  libusb_transfer& transfer = *each.transfer;
-  auto& device = *transfer.dev_handle->device;
-  auto* const memory = reinterpret_cast<std::byte*>(transfer.buffer);
-  const auto length = static_cast<std::size_t>(transfer.length);
-  if (each.cancelled) {
-    transfer.status = LIBUSB_TRANSFER_CANCELLED;
-    return true;
-  }
-  if (auto& wanted = fake::libusb().fail_transfer) {
-    transfer.status = static_cast<libusb_transfer_status>(*std::exchange(wanted, std::nullopt));
-    return true;
-  }
-  if ((transfer.endpoint & 0x80U) != 0) {
-    const auto got = device.bulk_in(transfer.endpoint, {memory, length}, kFrame);
-    if (!got && got.error().code == ErrorCode::timeout) return false;
-    transfer.actual_length = got ? static_cast<int>(*got) : 0;
-    transfer.status = got ? LIBUSB_TRANSFER_COMPLETED
-                          : static_cast<libusb_transfer_status>(status_of(error_of(got.error())));
-    return true;
-  }
-  while (each.sent < length) {
-    const std::size_t size = std::min(kPacket, length - each.sent);
-    const auto put = device.bulk_out(transfer.endpoint, {memory + each.sent, size}, kFrame);
-    if (!put && put.error().code == ErrorCode::timeout) return false;
-    if (!put) {
-      transfer.status = static_cast<libusb_transfer_status>(status_of(error_of(put.error())));
-      return true;
-    }
-    each.sent += size;
-    transfer.actual_length = static_cast<int>(each.sent);
-  }
-  transfer.status = LIBUSB_TRANSFER_COMPLETED;
-  return true;
-}
+void forget_libusb_devices() { known.clear(); }
 
-void tell_of_plugs(libusb_context* context) {
-  const auto events = fake::libusb().usb.update({}).value();
-  for (const auto& event : events) {
-    if (listener.call == nullptr) continue;
-    libusb_device* device = device_at(event.device);
-    listener.call(context, device,
-                  event.arrived ? LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED : LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT,
-                  listener.user);
-    if (event.arrived) continue;
-    known.devices.erase(event.device.path);
-    libusb_unref_device(device);
-  }
-}
-
-}  // namespace
-
-namespace forager::hal::fake {
-
-Libusb& libusb() { return *instance(); }
+bool libusb_plugged(const std::string& path) { return !libusb().usb.devices({.path = path}).value().empty(); }
 
 void new_libusb() {
-  known.clear();
-  submitted.clear();
-  listener = {};
+  forget_libusb_devices();
+  forget_libusb_transfers();
   instance() = std::make_unique<Libusb>();
 }
 
@@ -236,7 +144,8 @@ void libusb_unref_device(libusb_device* device) {
 ssize_t libusb_get_device_list(libusb_context*, libusb_device*** list) {
   const auto devices = fake::libusb().usb.devices().value();
   *list = new libusb_device* [devices.size() + 1] {};
-  for (std::size_t i = 0; i < devices.size(); ++i) (*list)[i] = libusb_ref_device(device_at(devices[i]));
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    (*list)[i] = libusb_ref_device(fake::libusb_device_at(devices[i]));
   return static_cast<ssize_t>(devices.size());
 }
 void libusb_free_device_list(libusb_device** list, int) { delete[] list; }
@@ -296,7 +205,8 @@ int libusb_get_port_numbers(libusb_device* device, std::uint8_t* ports, int) {
 int libusb_open(libusb_device* device, libusb_device_handle** handle) {
   auto opened = fake::libusb().usb.open({.path = device->facts.path});
   if (!opened)
-    return opened.error().code == ErrorCode::not_present ? LIBUSB_ERROR_NO_DEVICE : error_of(opened.error());
+    return opened.error().code == ErrorCode::not_present ? LIBUSB_ERROR_NO_DEVICE
+                                                         : fake::libusb_error_of(opened.error());
   *handle = new libusb_device_handle{*std::move(opened), device->facts.path};
   ++fake::libusb().open_handles;
   return 0;
@@ -315,7 +225,7 @@ int libusb_detach_kernel_driver(libusb_device_handle* handle, int interface) {
   return 0;
 }
 int libusb_attach_kernel_driver(libusb_device_handle* handle, int interface) {
-  if (!plugged(handle->path)) return LIBUSB_ERROR_NO_DEVICE;
+  if (!fake::libusb_plugged(handle->path)) return LIBUSB_ERROR_NO_DEVICE;
   driver_of(handle, interface) = fake::libusb().drivers[fmt::format("{}:{} was", handle->path, interface)];
   return 0;
 }
@@ -323,15 +233,15 @@ int libusb_claim_interface(libusb_device_handle* handle, int interface) {
   if (auto& wanted = fake::libusb().fail_claim) return *std::exchange(wanted, std::nullopt);
   if (!driver_of(handle, interface).empty()) return LIBUSB_ERROR_BUSY;
   const auto claimed = handle->device->claim(static_cast<std::uint8_t>(interface));
-  return claimed ? 0 : error_of(claimed.error());
+  return claimed ? 0 : fake::libusb_error_of(claimed.error());
 }
 int libusb_release_interface(libusb_device_handle* handle, int interface) {
   const auto released = handle->device->release(static_cast<std::uint8_t>(interface));
-  return released ? 0 : error_of(released.error());
+  return released ? 0 : fake::libusb_error_of(released.error());
 }
 int libusb_clear_halt(libusb_device_handle* handle, unsigned char endpoint) {
   const auto cleared = handle->device->clear_halt(endpoint);
-  return cleared ? 0 : error_of(cleared.error());
+  return cleared ? 0 : fake::libusb_error_of(cleared.error());
 }
 
 int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
@@ -345,10 +255,10 @@ int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std
   const std::span<std::byte> memory(reinterpret_cast<std::byte*>(data), length);
   if ((type & 0x80U) != 0) {
     const auto got = handle->device->control_in(asked, memory, timeout * kFrame);
-    return got ? static_cast<int>(*got) : error_of(got.error());
+    return got ? static_cast<int>(*got) : fake::libusb_error_of(got.error());
   }
   const auto put = handle->device->control_out(asked, memory, timeout * kFrame);
-  return put ? length : error_of(put.error());
+  return put ? length : fake::libusb_error_of(put.error());
 }
 int libusb_bulk_transfer(libusb_device_handle* handle, unsigned char endpoint, unsigned char* data,
                          int length, int* moved, unsigned timeout) {
@@ -358,63 +268,15 @@ int libusb_bulk_transfer(libusb_device_handle* handle, unsigned char endpoint, u
   if ((endpoint & 0x80U) != 0) {
     const auto got = handle->device->bulk_in(endpoint, memory, timeout * kFrame);
     *moved = got ? static_cast<int>(*got) : 0;
-    return got ? 0 : error_of(got.error());
+    return got ? 0 : fake::libusb_error_of(got.error());
   }
   const auto put = handle->device->bulk_out(endpoint, memory, timeout * kFrame);
   *moved = put ? length : 0;
-  return put ? 0 : error_of(put.error());
+  return put ? 0 : fake::libusb_error_of(put.error());
 }
 int libusb_interrupt_transfer(libusb_device_handle* handle, unsigned char endpoint, unsigned char* data,
                               int length, int* moved, unsigned timeout) {
   return libusb_bulk_transfer(handle, endpoint, data, length, moved, timeout);
 }
-
-libusb_transfer* libusb_alloc_transfer(int) {
-  ++fake::libusb().transfers;
-  return new libusb_transfer{};
-}
-void libusb_free_transfer(libusb_transfer* transfer) {
-  if (transfer == nullptr) return;
-  delete transfer;
-  --fake::libusb().transfers;
-}
-int libusb_submit_transfer(libusb_transfer* transfer) {
-  if (!plugged(transfer->dev_handle->path)) return LIBUSB_ERROR_NO_DEVICE;
-  transfer->actual_length = 0;
-  submitted.push_back({transfer});
-  return 0;
-}
-int libusb_cancel_transfer(libusb_transfer* transfer) {
-  for (Submitted& each : submitted)
-    if (each.transfer == transfer) each.cancelled = true;
-  return 0;
-}
-int libusb_handle_events_timeout_completed(libusb_context* context, timeval*, int*) {
-  tell_of_plugs(context);
-  // In order on each endpoint: what waits holds up those behind it.
-  std::vector<std::pair<libusb_device_handle*, unsigned>> waiting;
-  std::vector<libusb_transfer*> ended;
-  for (auto each = submitted.begin(); each != submitted.end();) {
-    const std::pair<libusb_device_handle*, unsigned> place(each->transfer->dev_handle,
-                                                           each->transfer->endpoint);
-    const bool behind = std::find(waiting.begin(), waiting.end(), place) != waiting.end();
-    if ((behind && !each->cancelled) || !serve(*each)) {
-      waiting.push_back(place);
-      ++each;
-      continue;
-    }
-    ended.push_back(each->transfer);
-    each = submitted.erase(each);
-  }
-  for (libusb_transfer* transfer : ended) transfer->callback(transfer);
-  return 0;
-}
-int libusb_hotplug_register_callback(libusb_context*, int, int, int, int, int,
-                                     libusb_hotplug_callback_fn call, void* user,
-                                     libusb_hotplug_callback_handle*) {
-  listener = {call, user};
-  return 0;
-}
-void libusb_hotplug_deregister_callback(libusb_context*, libusb_hotplug_callback_handle) { listener = {}; }
 
 }  // extern "C"
