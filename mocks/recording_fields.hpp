@@ -16,10 +16,9 @@ namespace forager::mocks {
 template <class Value, class ToFields>
 hal::Result<Value> taken(hal::Recorder& recorder, std::string_view device, std::string_view operation,
                          hal::Fields asked, hal::Result<Value> answer, ToFields to_fields) {
-  if (answer)
-    recorder.take(device, operation, std::move(asked), to_fields(*answer));
-  else
-    recorder.take(device, operation, std::move(asked), hal::fail(answer.error()));
+  hal::Result<hal::Fields> fields =
+      answer ? hal::Result<hal::Fields>(to_fields(*answer)) : hal::fail(answer.error());
+  recorder.take(device, operation, std::move(asked), std::move(fields));
   return answer;
 }
 
