@@ -107,7 +107,7 @@ TEST(Mislabeled, CalibrationLeavesThemOutAndNamesThem) {
   const std::set<std::string> swapped = swapped_epcs(scene, 3);
   ASSERT_EQ(swapped.size(), 12U);
   // Not those that were hardly heard, nor labels swapped among neighbours.
-  EXPECT_GE(fit->misplaced.size(), 4U);
+  EXPECT_GE(fit->misplaced.size(), 3U);
   for (const MisplacedTag& tag : fit->misplaced) {
     EXPECT_TRUE(swapped.contains(tag.epc)) << tag.epc;
     EXPECT_GE(tag.reads, 3U);
