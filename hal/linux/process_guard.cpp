@@ -108,7 +108,7 @@ void settle_in() {
 
 }  // namespace
 
-Result<std::unique_ptr<ProcessGuard>> ProcessGuard::start(Duration timeout, Act act) {
+Result<std::unique_ptr<ProcessGuard>> ProcessGuard::start(Duration timeout, const Act& act) {
   constexpr const char* kDevice = "guard process";
   if (timeout <= Duration::zero())
     return fail(ErrorCode::invalid_argument, kDevice, "start", "its time-out is not positive");

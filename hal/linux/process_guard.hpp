@@ -39,7 +39,7 @@ class ProcessGuard {
   // Forks, and waits until the guard watches. To be called before threads are started and devices are opened.
   // `timeout`: silence for longer than this, once armed, is a hang. Errors: invalid_argument (timeout not
   // positive), io (no more processes, or it did not come up).
-  [[nodiscard]] static Result<std::unique_ptr<ProcessGuard>> start(Duration timeout, Act act);
+  [[nodiscard]] static Result<std::unique_ptr<ProcessGuard>> start(Duration timeout, const Act& act);
   ~ProcessGuard();  // stands down
   ProcessGuard(const ProcessGuard&) = delete;
   ProcessGuard& operator=(const ProcessGuard&) = delete;
