@@ -6,7 +6,9 @@
 
 #include "boards/bench_devices.hpp"
 #include "boards/doctor.hpp"
+#include "hal/linux/hid_sysfs.hpp"
 #include "hal/linux/kernel.hpp"
+#include "hal/mcp2221_wire.hpp"
 
 namespace forager::boards {
 namespace {
@@ -53,19 +55,12 @@ void check_serial_ports(const Doctor& doctor) {
   doctor.ok(kArea, "serial", fmt::format("{}", fmt::join(ports, ", ")));
 }
 
-// MCP2221 and MCP2221A, 04D8:00DD: the kernel's driver takes the bridge without leaving a hidraw, so neither
-// hidapi nor forager finds it.
 void check_usb_bridge(const Doctor& doctor) {
-  for (const std::string& device : doctor.kernel.list("/sys/bus/hid/devices")) {
-    if (device.find(":04D8:00DD.") == std::string::npos) continue;
-    const std::string driver = doctor.kernel.link("/sys/bus/hid/devices/" + device + "/driver");
-    const std::string name = driver.substr(driver.rfind('/') + 1);
-    if (name == "mcp2221" || name == "hid-mcp2221")
-      return doctor.fail(kArea, "mcp2221", "the kernel's driver hid-mcp2221 holds the USB bridge",
-                         "echo blacklist hid_mcp2221 | sudo tee /etc/modprobe.d/forager.conf, sudo rmmod "
-                         "hid_mcp2221, and plug it in again; or use the driver's own GPIO chip and I2C bus");
-    return doctor.ok(kArea, "mcp2221", "a USB bridge is plugged in and free");
-  }
+  if (const auto held = hal::mcp2221_held_by_kernel(doctor.kernel))
+    return doctor.fail(kArea, "mcp2221", held->detail, held->mend);
+  for (const hal::HidNode& node : hal::list_hid_nodes(doctor.kernel))
+    if (node.facts.vendor == hal::mcp2221::kVendor && node.facts.product == hal::mcp2221::kProduct)
+      return doctor.ok(kArea, "mcp2221", "a USB bridge is plugged in and free");
   doctor.skip(kArea, "mcp2221", "no USB bridge is plugged in");
 }
 

@@ -90,12 +90,14 @@ std::vector<HidNode> list_hid_nodes(Kernel& kernel) {
 std::optional<Error> mcp2221_held_by_kernel(Kernel& kernel) {
   for (const HidNode& node : list_hid_nodes(kernel)) {
     const HidDeviceFacts& facts = node.facts;
-    if (facts.vendor != kMicrochip || facts.product != kMcp2221 || facts.driver != "mcp2221") continue;
+    if (facts.vendor != kMicrochip || facts.product != kMcp2221) continue;
+    if (facts.driver != "mcp2221" && facts.driver != "hid-mcp2221") continue;
     return Error{
         ErrorCode::busy,
         describe(facts),
         "open",
-        "the kernel's driver hid-mcp2221 has it and leaves no hidraw",
+        std::string("the kernel's driver hid-mcp2221 holds the USB bridge") +
+            (facts.path.empty() ? " and leaves no hidraw" : ""),
         "Either use its gpiochip and i2c adapter as those of the kernel, or: echo blacklist hid_mcp2221 | "
         "sudo tee /etc/modprobe.d/forager.conf && sudo rmmod hid_mcp2221, and plug it in again",
         0};
