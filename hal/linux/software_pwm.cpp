@@ -68,6 +68,7 @@ class ThreadedPwm final : public SoftwarePwm {
  private:
   static std::vector<PulseEngine::Line> borrowed(const std::vector<SoftwarePwmLine>& lines) {
     std::vector<PulseEngine::Line> out;
+    out.reserve(lines.size());
     for (const SoftwarePwmLine& line : lines) out.push_back({line.line.get(), line.stale_pulse});
     return out;
   }
