@@ -2,14 +2,17 @@
 # Boots a User-Mode Linux kernel and runs the tests of the real backends in it: once in real time, once in virtual time,
 # where the clock only moves while everybody waits, so that stamps of the kernel are exact. The guest sees the host's
 # files read-only; neither needs root. The output is the tests' own; exit code 1 if one failed.
-# Usage: tests/kernel/run.sh KERNEL_FOLDER PROGRAM [GTEST_FILTER]
+# Usage: tests/kernel/run.sh KERNEL_FOLDER PROGRAM [GUEST [FILTER]]
 #   KERNEL_FOLDER  as tests/kernel/build.sh prints it
 #   PROGRAM        kernel_tests
+#   GUEST          only this guest: real or virtual
+#   FILTER         of GoogleTest, instead of the guest's own
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 kernel=$1
 program=$(realpath "$2")
 only=${3:-}
+filter=${4:-}
 seconds=180 # a guest that hangs is ended
 
 work=$(mktemp -d "${TMPDIR:-/tmp}/forager-kernel.XXXXXX")
@@ -21,11 +24,12 @@ failed=0
 
 # guest NAME FILTER [KERNEL_OPTION ...]
 guest() {
-  local name=$1 filter=${only:-$2} started=$SECONDS log=$work/$1.log
+  local name=$1 tests=${filter:-$2} started=$SECONDS log=$work/$1.log
   shift 2
+  [ -z "$only" ] || [ "$only" = "$name" ] || return 0
   echo "== guest in $name time"
   timeout -k 5 "$seconds" "$kernel/linux" mem=384M root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$work/init" \
-    "FILTER=$filter" con=null con0=fd:0,fd:1 quiet "uml_dir=$work/uml" "$@" </dev/null 2>&1 | tr -d '\r' | tee "$log"
+    "FILTER=$tests" con=null con0=fd:0,fd:1 quiet "uml_dir=$work/uml" "$@" </dev/null 2>&1 | tr -d '\r' | tee "$log"
   if ! grep -qx 'JOB-RC 0' "$log"; then
     failed=1
     grep -q '^JOB-RC ' "$log" || echo "the guest ended without a result (is ptrace allowed here?)"
