@@ -54,10 +54,10 @@ TEST(Calibration, IntervalsHoldTheTruthAboutAsOftenAsTheySay) {
     for (std::size_t i = 0; i < inside.size(); ++i) inside[i] += (*losses)[i] <= kChiSquare95 ? 1 : 0;
   }
   RecordProperty("inside", fmt::format("{} {} {}", inside[0], inside[1], inside[2]));
-  // 95 % intended. At that, 9 or fewer of 12 would come up by chance once in 50 tries; the model's shortcuts
-  // (even shares of listening, one fade per place) may cost a little more.
+  // 95 % intended. At that, 9 or fewer of 12 would come up by chance once in 50 tries; intervals that hold
+  // the truth in 60 % of recordings would be told with nine chances in ten. Of 40 recordings: docs.
   for (const int count : inside)
-    EXPECT_GE(count, kRepeats * 3 / 4) << inside[0] << " " << inside[1] << " " << inside[2];
+    EXPECT_GE(count, kRepeats * 5 / 6) << inside[0] << " " << inside[1] << " " << inside[2];
 }
 
 TEST(Calibration, FindsR0AndSaysHowWell) {
