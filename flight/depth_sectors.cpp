@@ -40,11 +40,13 @@ template <class Pixel>
 void scan(std::span<const Pixel> pixels, const hal::DepthCameraModel& camera, const GuardConfig& config,
           int first, int last, DepthSector& sector) {
   Nearest nearest(config.nearest);
+  const auto columns = static_cast<std::size_t>(camera.columns);
   for (int row = 0; row < camera.rows; ++row) {
     const double up_per_m = -(row + 0.5 - camera.cy_px) / camera.fy_px;
     for (int column = first; column < last; ++column) {
       ++sector.pixels;
-      const auto depth_m = depth_of(pixels[static_cast<std::size_t>(row * camera.columns + column)], camera);
+      const std::size_t at = static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
+      const auto depth_m = depth_of(pixels[at], camera);
       if (!depth_m) continue;
       ++sector.valid;
       const double up_m = *depth_m * up_per_m;
