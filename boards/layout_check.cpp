@@ -37,7 +37,9 @@ LayoutCheck check_layout(const std::vector<reader::InventoryItem>& items, const 
   std::stable_sort(check.elsewhere.begin(), check.elsewhere.end(),
                    [](const auto& a, const auto& b) { return a.away_m > b.away_m; });
   for (const auto& [epc, item] : sought) check.strangers.push_back(epc);
-  std::sort(check.strangers.begin(), check.strangers.end());
+  std::sort(check.strangers.begin(), check.strangers.end(), [](const reader::Epc& a, const reader::Epc& b) {
+    return std::ranges::lexicographical_compare(a.bytes(), b.bytes());
+  });
   return check;
 }
 
