@@ -109,16 +109,17 @@ void MavlinkMonitor::take_heartbeat(const mavlink::Frame& frame, hal::Instant no
 void MavlinkMonitor::take_battery(const mavlink::Frame& frame) {
   Component* const owner = component(frame.sysid, frame.compid);
   if (owner == nullptr) return;
-  int percent = -1;
+  const auto take_percent = [owner](int percent) {
+    if (percent >= 0) owner->battery_percent = percent;  // negative: it does not know
+  };
   if (frame.id == mavlink::SysStatus::kId) {
     const auto status = mavlink::decode<mavlink::SysStatus>(frame);
-    percent = status.battery_remaining;
+    take_percent(status.battery_remaining);
     if (status.voltage_battery != 0xFFFF) owner->battery_volts = status.voltage_battery / 1000.0;
   } else {
     const auto status = mavlink::decode<mavlink::BatteryStatus>(frame);
-    if (status.id == 0) percent = status.battery_remaining;
+    if (status.id == 0) take_percent(status.battery_remaining);
   }
-  if (percent >= 0) owner->battery_percent = percent;
 }
 
 void MavlinkMonitor::next_interval() {
