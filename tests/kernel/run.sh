@@ -9,8 +9,8 @@
 #   FILTER         of GoogleTest, instead of the guest's own
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-kernel=$1
-program=$(realpath "$2")
+kernel=${1:?tests/kernel/run.sh: needs the folder of a kernel and the program}
+program=$(realpath "${2:?tests/kernel/run.sh: needs the program of the tests}")
 only=${3:-}
 filter=${4:-}
 seconds=180 # a guest that hangs is ended
