@@ -15,8 +15,7 @@
 namespace forager::boards {
 namespace {
 
-// Beyond this many times the 95 % point of what was heard nothing is looked at: nobody hears anything there,
-// and saying so tells nothing.
+// Beyond so many times the 95 % point of what was heard nobody hears anything; saying so tells nothing.
 constexpr double kFarShare = 1.4;
 // Heard from so many times the median range: no measure for others.
 constexpr double kWildShare = 3.0;
@@ -138,8 +137,7 @@ class Slicer {
     }
   }
 
-  // Sorted keys of (tag, port, slice) in which something was heard.
-  void mark_seen() {
+  void mark_seen() {  // sorted keys of (tag, port, slice) in which something was heard
     for (const Recording::Read& read : recording_.reads) {
       const std::size_t slice = slice_at(read.time_s);
       const std::size_t port = port_place(read.port);
@@ -171,8 +169,7 @@ class Slicer {
     far_m_ = reach_of(heard_m_);
   }
 
-  // Beyond what all but a few are heard from; what is far out of line (a tag that stands elsewhere) has no
-  // say.
+  // What all but a few are heard from; tags far out of line have no say.
   static double reach_of(const std::vector<double>& ranges) {
     std::vector<double> finite;
     for (const double range : ranges)
