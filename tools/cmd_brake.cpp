@@ -72,17 +72,20 @@ class BrakeSession {
       if (!tick() || pair_->state() == servo::BrakeState::faulted) return;
     } while (clock_.now() - start < time);
   }
+  // Judged after the last lock: it is the one that matters.
   int finish() {
     const bool interrupted = StopSignal::raised();
-    const bool faulted = failed_ || pair_->state() == servo::BrakeState::faulted;
-    const std::string why = pair_->status().reason;
+    const bool faulted = pair_->state() == servo::BrakeState::faulted;
+    std::string why = faulted ? pair_->status().reason : std::string();
     pair_->halt();
     for (const hal::Instant end = clock_.now() + kLocking; clock_.now() < end;) static_cast<void>(tick());
     output_.state(clock_.now(), *pair_, bench_);
-    if (faulted) {
-      fmt::print(stderr, "forager: {}\n", one_line(why));
-      return kExitFailure;
-    }
+    const servo::BrakeStatus& status = pair_->status();
+    if (!faulted && status.left) why = "left brake at the last lock: " + status.left.detail;
+    if (!faulted && status.right)
+      why += (why.empty() ? "" : "; ") + ("right brake at the last lock: " + status.right.detail);
+    if (!why.empty()) fmt::print(stderr, "forager: {}\n", one_line(why));
+    if (failed_ || !why.empty()) return kExitFailure;
     return interrupted && command_.task == BrakeTask::set ? kExitFailure : kExitDone;
   }
   [[nodiscard]] int complain_no_autopilot() const {

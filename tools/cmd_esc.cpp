@@ -117,16 +117,18 @@ class EscSession {
   }
   int finish() {
     const bool interrupted = StopSignal::raised();
-    const bool faulted = cut_short_ || bank_.state() == flight::EscState::faulted;
-    const std::string why = bank_.reason();
+    const bool faulted = bank_.state() == flight::EscState::faulted;
+    std::string why = bank_.reason();
     if (interrupted) output_.tell(clock_.now(), fmt::format("{}: stop pulses", StopSignal::name()));
     bank_.disarm(interrupted ? StopSignal::name() : "done", clock_.now());
-    static_cast<void>(bench_.advance(clock_.now()));
+    if (const auto lives = bench_.advance(clock_.now()); !lives && !trouble_) trouble_ = lives.error();
+    // The last stop is the one that matters.
+    const bool unstopped = !faulted && bank_.state() == flight::EscState::faulted;
+    if (unstopped) why = bank_.reason();
     output_.end(bank_, bench_, clock_.now());
-    if (interrupted) return kExitFailure;
     if (trouble_) return complain(*trouble_);
-    if (faulted) return complain_fault(why);
-    return check();
+    if (unstopped || ((faulted || cut_short_) && !interrupted)) return complain_fault(why);
+    return interrupted ? kExitFailure : check();
   }
   static int complain_fault(const std::string& why) {
     fmt::print(stderr, "forager: {}\n", one_line(why));

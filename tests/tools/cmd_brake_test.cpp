@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/sysfs_tree.hpp"
 
 namespace forager::tools {
 namespace {
@@ -153,6 +155,24 @@ right = { backend = "modbus", bus = "127.0.0.1:1", timeout_ms = 20 }
   EXPECT_THAT(result.err, AllOf(HasSubstr("right brake, output"), HasSubstr("127.0.0.1:1")));
   EXPECT_THAT(result.out, HasSubstr("\"state\":\"faulted\""));
   EXPECT_EQ(last_state(result.out)["left"], 1.0);
+}
+
+// It is held all the time, and cannot be told any more when the program ends.
+TEST_F(CmdBrakeOnABoard, ALastLockThatFailsIsAFailure) {
+  const test::SysfsTree tree;
+  const auto line = [&](int channel) {
+    return "{ backend = \"sysfs_pwm\", chip = \"" + tree.chip() + "\", channel = " + std::to_string(channel) +
+           " }\n";
+  };
+  const std::string file =
+      board("guard_timeout_ms = 10000\n[brakes]\nleft = " + line(0) + "right = " + line(1));
+  Program program({"brake", "watch", "--arm", "--board", file, "--json"});
+  ASSERT_TRUE(program.wait_for_out("\"state\":\"engaged\"", 10s)) << program.so_far().err;
+  std::filesystem::remove(tree.chip() + "/pwm1/duty_cycle");
+  program.send_signal(SIGINT);
+  const ProgramResult result = program.finish();
+  EXPECT_EQ(result.exit_code, 1) << result.out;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("right brake"), HasSubstr("pwm1/duty_cycle")));
 }
 
 TEST_F(CmdBrakeOnABoard, AnAutopilotThatIsSilentIsAFailure) {

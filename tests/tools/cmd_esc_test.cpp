@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
+#include "tests/tools/sysfs_tree.hpp"
 
 namespace forager::tools {
 namespace {
@@ -156,6 +158,21 @@ most_throttle = 0.3
                       "\"b\", channel = 1 }]\n")},
                HasSubstr("twice"));
   expect_usage({"esc", "list", "--board", board("[esc]\nthrotle = 1\n")}, HasSubstr("throtle"));
+}
+
+// Between two pulses that are the same nothing is written: only the stop finds the output gone.
+TEST(CmdEsc, AStopThatFailsIsAFailure) {
+  const test::SysfsTree tree;
+  const std::string board = tree.folder().write(
+      "escs.toml", "[board]\nname = \"bench\"\nguard_timeout_ms = 10000\n[esc]\nchip = \"" + tree.chip() +
+                       "\"\nmotor = [{ name = \"left\", channel = 0 }]\n");
+  Program program({"esc", "run", "--arm", "--props-off", kSentence, "--throttle", "0", "--hold", "1",
+                   "--connect-within", "0", "--board", board});
+  ASSERT_TRUE(program.wait_for_out("arming -> armed", 20s)) << program.so_far().err;
+  std::filesystem::remove(tree.chip() + "/pwm0/duty_cycle");
+  const ProgramResult result = program.finish();
+  EXPECT_EQ(result.exit_code, 1) << result.out;
+  EXPECT_THAT(result.err, HasSubstr("pwm0/duty_cycle"));
 }
 
 TEST(CmdEsc, ARealBoardThatIsNotThereSaysSo) {
