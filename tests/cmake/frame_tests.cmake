@@ -1,5 +1,6 @@
 # Tests of the frame itself: real backends, the include rule, the installed package.
 forager_tests(hal/linux LINKS forager_hal_linux forager_hal forager_mocks)
+forager_tests(hal/linux/software_pwm LINKS forager_hal_linux forager_hal)  # what has a thread, by itself
 if(NOT FORAGER_HAVE_CURL)
   forager_tests(hal/linux/absent LINKS forager_hal_linux)
 elseif(FORAGER_HAVE_CRYPTO)

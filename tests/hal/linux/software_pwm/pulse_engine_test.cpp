@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "tests/hal/linux/stamped_line.hpp"
+#include "tests/hal/linux/software_pwm/stamped_line.hpp"
 #include "tests/hal/pwm_contract.hpp"
 
 namespace forager::hal {
