@@ -12,14 +12,14 @@ FtdiRate ftdi_rate(std::uint32_t asked, bool fast) {
   const bool fast_clock = fast && asked >= ftdi::kFastClockFrom;
   const double clock = fast_clock ? ftdi::kFastClock : ftdi::kClock;
   const double wanted = 8.0 * clock / asked;
-  // Between 8 and 16 eighths there are 8, 12 and 16 only.
-  double eighths = std::clamp(std::round(wanted), 8.0, kMostEighths);
-  if (eighths < 16.0) {
-    eighths = 8.0;
-    for (const double candidate : {12.0, 16.0})
-      if (std::abs(8.0 * clock / candidate - asked) < std::abs(8.0 * clock / eighths - asked))
-        eighths = candidate;
-  }
+  const auto off_by = [&](double eighths) { return std::abs(8.0 * clock / eighths - asked); };
+  // Of the divisors on both sides the one with the nearer rate. Between 8 and 16 eighths there are 8, 12 and
+  // 16 only.
+  const bool coarse = wanted < 16.0;
+  const double below = coarse ? 8.0 : std::min(std::floor(wanted), kMostEighths);
+  double eighths = below;
+  for (const double candidate : {coarse ? 12.0 : below, coarse ? 16.0 : std::min(below + 1.0, kMostEighths)})
+    if (off_by(candidate) < off_by(eighths)) eighths = candidate;
   const auto whole = static_cast<std::uint32_t>(eighths);
   std::uint32_t code = whole / 8;
   if (whole == 8)

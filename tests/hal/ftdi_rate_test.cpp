@@ -41,8 +41,7 @@ RC_GTEST_PROP(FtdiRate, NoOtherDivisorComesNearer, ()) {
   const double eighths = 24e6 / rate.baud;
   for (const double other : {std::floor(eighths + 0.5) - 1.0, std::floor(eighths + 0.5) + 1.0}) {
     const bool possible = other == 8.0 || other == 12.0 || other >= 16.0;
-    // Rounding the divisor instead of the rate is off by less than a quarter of a step squared.
-    if (possible) RC_ASSERT(std::abs(24e6 / other - asked) > std::abs(rate.baud - asked) * 0.98);
+    if (possible) RC_ASSERT(std::abs(24e6 / other - asked) >= std::abs(rate.baud - asked));
   }
 }
 
