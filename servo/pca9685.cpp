@@ -96,7 +96,7 @@ hal::Result<> Pca9685::open(hal::Instant now) {
   constexpr std::array kAllOff{std::byte{kAllLed}, std::byte{0}, std::byte{0}, std::byte{0},
                                std::byte{kFull}};
   FORAGER_TRY(bus_->write(config_.address, kAllOff));
-  FORAGER_TRY(write(kMode2, static_cast<std::uint8_t>(kTotemPole | (config_.inverted ? kInvert : 0))));
+  FORAGER_TRY(write(kMode2, mode2_wanted()));
   FORAGER_TRY(write(kPreScale, *prescale));
   const auto kept = read(kPreScale);
   if (!kept) return hal::fail(kept.error());
@@ -115,15 +115,20 @@ hal::Result<> Pca9685::adopt(hal::Instant now) {
   const auto wanted = prescale_for(config_.period);
   if (!wanted) return hal::fail(wanted.error());
   const auto mode1 = read(kMode1);
-  const auto prescale = mode1 ? read(kPreScale) : mode1;
+  const auto mode2 = mode1 ? read(kMode2) : mode1;
+  const auto prescale = mode2 ? read(kPreScale) : mode2;
   if (!prescale) return hal::fail(prescale.error());
-  if (!runs(*mode1) || *prescale != *wanted) return open(now);
+  if (!runs(*mode1) || *mode2 != mode2_wanted() || *prescale != *wanted) return open(now);
   now_ = now;
   prescale_ = *prescale;
   was_open_ = true;
   state_ = State::running;
   next_check_ = now + config_.check_interval;
   return enable_ != nullptr ? enable_->set(true) : hal::Result<>{};
+}
+
+std::uint8_t Pca9685::mode2_wanted() const {
+  return static_cast<std::uint8_t>(kTotemPole | (config_.inverted ? kInvert : 0));
 }
 
 bool Pca9685::runs(std::uint8_t mode1) { return (mode1 & (kSleep | kAutoIncrement)) == kAutoIncrement; }
@@ -139,11 +144,13 @@ hal::Result<> Pca9685::update(hal::Instant now) {
   now_ = now;
   if (state_ == State::waking) {
     if (!woken_at_) woken_at_ = now;
-    if (now - *woken_at_ >= kWake) FORAGER_TRY(finish_waking());
+    if (now - *woken_at_ < kWake) return {};
+    auto woken = finish_waking();
+    next_check_ = now + config_.check_interval;
+    if (!woken) state_ = State::closed;  // or pulses would be taken that nobody makes
+    return woken;
   }
-  if (!was_open_ || state_ == State::waking || config_.check_interval <= hal::Duration::zero() ||
-      now < next_check_)
-    return {};
+  if (!was_open_ || config_.check_interval <= hal::Duration::zero() || now < next_check_) return {};
   next_check_ = now + config_.check_interval;
   return state_ == State::closed ? open(now) : check(now);
 }
@@ -156,7 +163,6 @@ hal::Result<> Pca9685::finish_waking() {
   if ((*mode1 & kRestart) != 0) FORAGER_TRY(write(kMode1, kAutoIncrement | kRestart));
   if (enable_ != nullptr) FORAGER_TRY(enable_->set(true));
   state_ = State::running;
-  next_check_ = now_ + config_.check_interval;
   journal_->note(now_, "pca9685",
                  fmt::format("0x{:02x}: running at {:.2f} Hz", config_.address,
                              1e9 / static_cast<double>(period().count())));
@@ -171,7 +177,7 @@ hal::Result<> Pca9685::check(hal::Instant now) {
     state_ = State::closed;
     return hal::fail(prescale.error());
   }
-  if (runs(*mode1) && *prescale == prescale_) return {};
+  if (runs(*mode1) && *prescale == prescale_) return send_pending();
   ++recoveries_;
   journal_->note(
       now, "pca9685",
@@ -179,15 +185,16 @@ hal::Result<> Pca9685::check(hal::Instant now) {
   return open(now);
 }
 
+// The newest wish is kept whatever becomes of it: a chip that comes back must not go on with an older one.
 hal::Result<> Pca9685::become(Pca9685Channel& channel, std::optional<hal::Duration> pulse) {
+  if (was_open_) channel.wanted_ = pulse;
   if (state_ == State::closed)
     return hal::fail(hal::ErrorCode::invalid_state, channel.name_, "set pulse",
                      "the chip is not open, or was lost");
-  const auto before = std::exchange(channel.wanted_, pulse);
-  channel.pending_ = state_ == State::waking;
-  if (channel.pending_) return {};
+  channel.pending_ = true;
+  if (state_ == State::waking) return {};
   auto sent = send(channel);
-  if (!sent) channel.wanted_ = before;
+  channel.pending_ = !sent;
   return sent;
 }
 

@@ -47,12 +47,15 @@ class Pca9685Channel final : public hal::PwmChannel {
 // PCA9685, 16 channels of 12 bits on I2C.
 //
 //   closed --open()--> waking --update(), 500 us--> running --set_period()--> waking
-//   running --found reset or unreachable--> closed; open() again, or by itself at the next check
+//   waking, running --found reset or unreachable--> closed; open() again, or by itself at the next check
 //
 // open() puts all outputs off before the oscillator runs, so nothing moves at power-up, and sets the
 // auto-increment bit before the first burst: without it a burst of four bytes lands in one register. While
 // waking (the data sheet guarantees no timing for 500 us) new pulses are kept and sent by the update() that
 // ends it.
+//
+// A pulse that could not be told is an error, and still the newest wish: the chip gets it at the next check,
+// or when it is back, unless it is told another one before. pulse() says what is wished for.
 //
 // A new period is written asleep, with the ticks that go with it: no pulse is made with old ticks at the new
 // rate.
@@ -110,6 +113,7 @@ class Pca9685 final : public hal::PwmGroup {
   [[nodiscard]] hal::Result<> finish_waking();
   [[nodiscard]] hal::Result<> check(hal::Instant now);
   [[nodiscard]] static bool runs(std::uint8_t mode1);
+  [[nodiscard]] std::uint8_t mode2_wanted() const;
   [[nodiscard]] long ticks(hal::Duration pulse) const;
 
   hal::I2c* bus_;

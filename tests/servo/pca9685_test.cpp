@@ -163,6 +163,37 @@ TEST_F(OnTheChip, AbsentItSaysNoAckAndComesBackByItself) {
   pass(600ms);
   EXPECT_EQ(Pca9685::State::running, chip_.state());
   EXPECT_EQ(chip_.channel(0).pulse(), sim_.pulse(0));
+  EXPECT_NEAR(1000.0, in_us(sim_.pulse(0).value()), 2.5) << "the newest wish, not the pulse it had";
+}
+
+// A brake that was to lock while the bus was disturbed must not stay open because nobody says it twice.
+TEST_F(OnTheChip, AWishThatWasRefusedIsMadeAtTheNextCheck) {
+  start();
+  ASSERT_TRUE(chip_.channel(0).set_pulse(1180us));
+  ASSERT_TRUE(chip_.channel(1).set_pulse(1500us));
+  bus_.detach(0x40);
+  EXPECT_EQ(hal::ErrorCode::no_ack, chip_.channel(0).set_pulse(1725us).error().code);
+  EXPECT_EQ(hal::ErrorCode::no_ack, chip_.channel(1).release().error().code);
+  bus_.attach(0x40, sim_);
+  EXPECT_NEAR(1180.0, in_us(sim_.pulse(0).value()), 2.5);
+  pass(250ms);
+  EXPECT_NEAR(1725.0, in_us(sim_.pulse(0).value()), 2.5);
+  EXPECT_FALSE(sim_.pulse(1).has_value());
+  EXPECT_EQ(0U, chip_.recoveries());
+}
+
+TEST_F(OnTheChip, LostWhileItWakesItTakesNoPulsesUntilItIsBack) {
+  ASSERT_TRUE(chip_.open(now_));
+  pass(5ms);
+  bus_.detach(0x40);
+  pass(5ms);
+  EXPECT_FALSE(last_);
+  EXPECT_EQ(Pca9685::State::closed, chip_.state());
+  EXPECT_EQ(hal::ErrorCode::invalid_state, chip_.channel(0).set_pulse(1725us).error().code);
+  bus_.attach(0x40, sim_);
+  pass(250ms);
+  EXPECT_EQ(Pca9685::State::running, chip_.state());
+  EXPECT_NEAR(1725.0, in_us(sim_.pulse(0).value()), 2.5);
 }
 
 // Any register keeps a byte; PRE_SCALE of something else does not.
