@@ -10,8 +10,9 @@
 namespace forager::flight {
 
 // The right to spin one vehicle's motors. Move-only, handed out by a MotorBay to one holder at a time, given
-// back when it is destroyed. Neither an EscBank nor an autopilot bridge can be made without it, so no program
-// that compiles can arm through the autopilot and pulse the ESCs of the same vehicle at once.
+// back when it is destroyed. Neither an EscBank nor an autopilot bridge can be made without it, so whoever
+// makes both from one bay cannot arm through the autopilot and pulse the ESCs of the same vehicle at once.
+// One bay for each vehicle is the program's part: two bays, or two programs, know nothing of each other.
 class MotorAuthority {
  public:
   MotorAuthority(MotorAuthority&&) noexcept = default;
