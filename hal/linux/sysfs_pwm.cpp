@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <charconv>
 #include <deque>
+
+#include "hal/linux/device_holder.hpp"
 
 namespace forager::hal {
 namespace {
@@ -20,7 +24,7 @@ std::string mend_for(ErrorCode code) {
     case ErrorCode::not_present:
       return "Enable the hardware PWM: dtoverlay=pwm-2chan on a Raspberry Pi; list with: ls /sys/class/pwm";
     case ErrorCode::busy:
-      return "A driver of the kernel has this channel: take its overlay out, or use another channel";
+      return "A driver of the kernel or another program has this channel: end it, or use another channel";
     default:
       return {};
   }
@@ -41,6 +45,9 @@ class Channel final : public PwmChannel {
  public:
   Channel(Group& group, std::string folder, std::string name)
       : group_(&group), folder_(std::move(folder)), name_(std::move(name)) {}
+  ~Channel() override;
+  Channel(const Channel&) = delete;
+  Channel& operator=(const Channel&) = delete;
 
   Result<> prepare(const SysfsPwmConfig& config, Clock& clock, Deadline udev);
   Result<> set_period(Duration period, std::string_view operation) {
@@ -55,12 +62,16 @@ class Channel final : public PwmChannel {
   [[nodiscard]] std::string_view do_name() const override { return name_; }
   Result<> put(std::string_view attribute, std::int64_t value, std::string_view operation);
   Result<std::int64_t> get(std::string_view attribute);
+  Result<> take_for_us_alone();
   Result<> adopt(const SysfsPwmConfig& config);
+  Result<> keep_polarity(bool inverted);
+  Result<> set_polarity(bool inverted);
 
   Group* group_;
   std::string folder_;
   std::string name_;
   std::optional<Duration> pulse_;
+  int lock_ = -1;  // of the channel's folder
   bool enabled_ = false;
 };
 
@@ -120,24 +131,66 @@ Result<> Channel::prepare(const SysfsPwmConfig& config, Clock& clock, Deadline u
   }
 }
 
+Channel::~Channel() {
+  if (lock_ >= 0) group_->kernel().close(lock_);
+}
+
+// An exported channel is there for everybody. Whoever dies lets go of the lock.
+Result<> Channel::take_for_us_alone() {
+  if (lock_ >= 0) return {};
+  Kernel& kernel = group_->kernel();
+  const int fd = kernel.open(folder_, O_RDONLY | O_DIRECTORY);
+  const int answer = fd < 0 ? fd : kernel.lock(fd);
+  if (answer >= 0) {
+    lock_ = fd;
+    return {};
+  }
+  if (fd >= 0) kernel.close(fd);
+  const int error = -answer;
+  if (fd < 0 || error != EAGAIN)
+    return fail(code_of_device_errno(error), name_, "open", folder_, mend_for(code_of_device_errno(error)),
+                error);
+  const std::size_t chip = folder_.rfind('/');  // the link is the chip's
+  const std::string holder =
+      holder_of(kernel, real_device(kernel, folder_.substr(0, chip)) + folder_.substr(chip));
+  return fail(ErrorCode::busy, name_, "open",
+              holder.empty() ? "another program drives this channel" : holder + " drives this channel",
+              mend_for(ErrorCode::busy), error);
+}
+
 Result<> Channel::adopt(const SysfsPwmConfig& config) {
+  FORAGER_TRY(take_for_us_alone());
   const auto enabled = get("enable");
   if (!enabled) return fail(enabled.error());
   enabled_ = *enabled != 0;
+  if (enabled_) FORAGER_TRY(keep_polarity(config.inverted));
   const auto duty = get("duty_cycle");
   if (!duty) return fail(duty.error());
   const Duration running = std::min(Duration(*duty), config.period);
   if (running < Duration(*duty)) FORAGER_TRY(put("duty_cycle", running.count(), "open"));
   FORAGER_TRY(set_period(config.period, "open"));
-  if (!enabled_) {  // polarity changes while nothing runs, and not before there is a period
-    const auto polarity =
-        write_file(group_->kernel(), folder_ + "/polarity", config.inverted ? "inversed" : "normal");
-    const ErrorCode code = polarity ? ErrorCode::io : polarity.error().code;
-    if (!polarity && (config.inverted || (code != ErrorCode::invalid_argument &&
-                                          code != ErrorCode::unsupported && code != ErrorCode::not_present)))
-      return told(polarity.error(), name_, "set polarity");
-  }
   if (enabled_) pulse_ = running;
+  return enabled_ ? Result<>() : set_polarity(config.inverted);
+}
+
+// What runs with the other polarity is somebody else's: its pulses would be taken for pauses.
+Result<> Channel::keep_polarity(bool inverted) {
+  const auto polarity = read_file(group_->kernel(), folder_ + "/polarity");
+  if (!polarity && polarity.error().code == ErrorCode::not_present && !inverted)
+    return {};  // it has only one
+  if (!polarity) return told(polarity.error(), name_, "open");
+  if ((*polarity == "inversed") == inverted) return {};
+  return fail(ErrorCode::busy, name_, "open", "it makes pulses of the other polarity (" + *polarity + ")",
+              "See who uses it; if nobody does: echo 0 > " + folder_ + "/enable");
+}
+
+// Changes while nothing runs, and not before there is a period.
+Result<> Channel::set_polarity(bool inverted) {
+  const auto polarity = write_file(group_->kernel(), folder_ + "/polarity", inverted ? "inversed" : "normal");
+  const ErrorCode code = polarity ? ErrorCode::io : polarity.error().code;
+  if (!polarity && (inverted || (code != ErrorCode::invalid_argument && code != ErrorCode::unsupported &&
+                                 code != ErrorCode::not_present)))
+    return told(polarity.error(), name_, "set polarity");
   return {};
 }
 

@@ -31,6 +31,10 @@ struct SysfsPwmConfig {
 // leaves everything as it is; halting is the business of whoever drives the servo. After a crash the kernel
 // goes on with the last pulses.
 //
+// A channel has one driver: its folder is locked (flock) for as long as the group lives, the kernel lets go
+// of it when the program dies. That holds among programs that ask; who writes to sysfs without asking is not
+// kept out.
+//
 // sysfs takes nanoseconds and gives them back as written; what the hardware rounds them to it does not say.
 class SysfsPwm : public PwmGroup {
  public:
@@ -39,8 +43,9 @@ class SysfsPwm : public PwmGroup {
 
 // Exports and prepares the channels; waits on `clock` for udev, for at most `settle`. Both must outlive the
 // group. Errors: not_present (no such chip or channel: overlay missing), permission (not in the group that
-// owns the files, udev rule missing), busy (another driver of the kernel has the channel), invalid_argument
-// (no channels, period not positive, or refused by the hardware), unsupported (the chip cannot invert).
+// owns the files, udev rule missing), busy (another driver of the kernel or another program has the channel,
+// or it runs with the other polarity), invalid_argument (no channels, period not positive, or refused by the
+// hardware), unsupported (the chip cannot invert).
 [[nodiscard]] Result<std::unique_ptr<SysfsPwm>> open_sysfs_pwm(const SysfsPwmConfig& config, Clock& clock,
                                                                Kernel& kernel = real_kernel());
 

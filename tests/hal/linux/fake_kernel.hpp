@@ -148,6 +148,25 @@ class FakePwmChip {
     long write(std::string_view text) override { return on_write ? on_write(text) : -EIO; }
   };
 
+  // A channel's folder: one lock, of the descriptor that was first.
+  class Folder final : public Node {
+   public:
+    int lock() override {
+      if (std::exchange(locked_, true)) return ++refused_, -EAGAIN;
+      return 0;
+    }
+    void close() override {
+      if (refused_ > 0)
+        --refused_;
+      else
+        locked_ = false;
+    }
+
+   private:
+    bool locked_ = false;
+    int refused_ = 0;
+  };
+
   void add(const std::string& path, std::function<long(std::string_view)> write,
            std::function<std::string()> read, std::function<int(int)> open = nullptr) {
     auto node = std::make_shared<Attribute>();
@@ -187,6 +206,7 @@ class FakePwmChip {
   void populate(std::size_t index) {
     PwmLine& line = lines_[index];
     const std::string folder = "pwm" + std::to_string(index) + "/";
+    kernel_->files[folder_ + "/pwm" + std::to_string(index)] = std::make_shared<Folder>();
     const auto open = [this, &line](int flags) {
       return (flags & O_ACCMODE) != O_RDONLY && clock_->now() < line.writable_from ? -EACCES : 0;
     };

@@ -33,7 +33,43 @@ TEST_F(SysfsPwmTest, WaitsForUdevAfterTheExport) {
   ASSERT_TRUE(pwm) << describe(pwm.error());
   EXPECT_GE(clock_.now() - before, 30ms);
   EXPECT_LE(clock_.now() - before, 50ms);
-  EXPECT_EQ(0U, kernel_.open_files());
+  EXPECT_EQ(2U, kernel_.open_files()) << "the locks of two channels";
+}
+
+TEST_F(SysfsPwmTest, AChannelHasOneDriver) {
+  kernel_.links["/sys/class/pwm/pwmchip0"] = "../../devices/platform/soc/fe20c000.pwm/pwm/pwmchip0";
+  kernel_.files["/proc/812/fd/7"] = std::make_shared<fake::Node>();
+  kernel_.links["/proc/812/fd/7"] = "/sys/devices/platform/soc/fe20c000.pwm/pwm/pwmchip0/pwm0";
+  {
+    const auto first = open({.channels = {0}});
+    ASSERT_TRUE(first) << describe(first.error());
+    const auto second = open({.channels = {0}});
+    EXPECT_EQ(ErrorCode::busy, code(second));
+    EXPECT_THAT(describe(second.error()), HasSubstr("process 812 (?) drives this channel"));
+    EXPECT_EQ(ErrorCode::busy, code(open({.channels = {1, 0}})));
+    EXPECT_TRUE(open({.channels = {1}})) << "its neighbour is free";
+    ASSERT_TRUE((*first)->channel(0).set_pulse(1180us));
+  }
+  const auto next = open({.channels = {0}});
+  ASSERT_TRUE(next) << describe(next.error());
+  EXPECT_EQ(1180us, (*next)->channel(0).pulse());
+}
+
+TEST_F(SysfsPwmTest, WhatRunsWithTheOtherPolarityIsSomebodyElses) {
+  chip_.export_now(0);
+  chip_.line(0) = {.period = 20'000'000,
+                   .duty = 1'725'000,
+                   .enabled = true,
+                   .inversed = true,
+                   .exported = true,
+                   .writable_from = Instant()};
+  const auto refused = open({.channels = {0}});
+  EXPECT_EQ(ErrorCode::busy, code(refused));
+  EXPECT_THAT(describe(refused.error()), HasSubstr("inversed"));
+  EXPECT_EQ(1'725'000, chip_.line(0).duty);
+  const auto inverted = open({.channels = {0}, .inverted = true});
+  ASSERT_TRUE(inverted) << describe(inverted.error());
+  EXPECT_EQ(1725us, (*inverted)->channel(0).pulse());
 }
 
 TEST_F(SysfsPwmTest, GivesUpOnPermissionAfterTheTimeItWasGiven) {
