@@ -19,6 +19,9 @@ constexpr std::array kBackends{BackendName{BrakeBackend::sim, "sim"},
 
 // A brake must be locked at most 300 ms after something went wrong: slower than this it would not be.
 constexpr Range kSlew{4.0, 1000.0};
+// The control loop waits for every exchange. Coil, target and measured position of both brakes, each answered
+// at the last moment, fit into that time, too.
+constexpr Range kModbusTimeout_ms{1, 50};
 constexpr Range kRegister{0, 65535};
 
 hal::Duration micros(ConfigReader& table, std::string_view key, hal::Duration fallback, Range allowed) {
@@ -64,7 +67,7 @@ void read_modbus(ConfigReader& table, BrakeLine& line) {
   line.baud = static_cast<int>(table.integer("baud", line.baud, {1200, 921600}));
   const std::string parity = table.choice("parity", "even", {"none", "even", "odd"});
   line.parity = parity == "none" ? 'N' : parity == "even" ? 'E' : 'O';
-  line.timeout = table.duration("timeout_ms", line.timeout, {1, 1000});
+  line.timeout = table.duration("timeout_ms", line.timeout, kModbusTimeout_ms);
   servo::ModbusBrakeConfig& actuator = line.actuator;
   const auto number = [&table](std::string_view key, std::uint16_t fallback) {
     return static_cast<std::uint16_t>(table.integer(key, fallback, kRegister));
@@ -136,6 +139,11 @@ std::string_view to_string(BrakeBackend backend) {
   for (const BackendName& known : kBackends)
     if (known.backend == backend) return known.name;
   return "unknown";
+}
+
+hal::Duration longest_wait(const BrakeLine& line) {
+  if (line.backend != BrakeBackend::modbus) return {};
+  return (line.actuator.enable_coil ? 3 : 2) * line.timeout;
 }
 
 BrakeBoard read_brake_board(ConfigReader table) {

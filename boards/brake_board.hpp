@@ -36,7 +36,7 @@ struct BrakeLine {
   servo::WhenActive when_active = servo::WhenActive::opens;  // gpio
   int baud = 19200;                                          // modbus on a serial line
   char parity = 'E';
-  hal::Duration timeout = std::chrono::milliseconds(20);  // of one exchange on I2C or Modbus
+  hal::Duration timeout = std::chrono::milliseconds(20);  // of one exchange on I2C or Modbus; the loop waits
   servo::ModbusBrakeConfig actuator{};                    // modbus
 };
 
@@ -48,6 +48,10 @@ struct BrakeBoard {
   BrakeLine left{.pulses = servo::laboratory_left()};
   BrakeLine right{.pulses = servo::laboratory_right()};
 };
+
+// How long one turn of the control loop may wait for this brake beyond its own work: for the exchanges with a
+// Modbus actuator that does not answer in time. Zero for all others.
+[[nodiscard]] hal::Duration longest_wait(const BrakeLine& line);
 
 // Reads the table; mistakes become the reader's issue.
 [[nodiscard]] BrakeBoard read_brake_board(ConfigReader table);

@@ -54,8 +54,7 @@ hal::Duration guard_timeout(const Board& board, OutputScope scope) {
   if (!scope.brakes && !scope.escs) return std::chrono::hours(24);
   hal::Duration timeout = board.guard_timeout;
   if (scope.brakes)
-    for (const BrakeLine* line : {&board.brakes.left, &board.brakes.right})
-      if (line->backend == BrakeBackend::modbus) timeout += 2 * line->timeout;  // a write and a read
+    for (const BrakeLine* line : {&board.brakes.left, &board.brakes.right}) timeout += longest_wait(*line);
   return timeout;
 }
 

@@ -25,8 +25,10 @@ struct ModbusBrakeConfig {
 };
 
 // A linear actuator on Modbus that presses a brake. A target is written when it changes, after a failure and
-// every refresh. Each move() costs at most one write and one read on the bus, and one more write where a coil
-// enables it. After a crash the actuator stays where it is: choose one whose own time-out locks it.
+// every refresh. Each move() waits for at most one write and one read on the bus, and for one more write
+// where a coil enables it, each for up to the time-out of the bus: whoever must lock within a given time
+// chooses that accordingly. halt() waits for the writes. After a crash the actuator stays where it is: choose
+// one whose own time-out locks it.
 class ModbusBrake final : public BrakeActuator {
  public:
   // Borrows the bus. Errors: invalid_argument (open and locked the same, slew or refresh not positive).

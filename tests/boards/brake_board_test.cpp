@@ -105,6 +105,29 @@ slew_per_s = 8
   EXPECT_DOUBLE_EQ(8, right.actuator.slew_per_s);
 }
 
+// A brake locks within 300 ms of whatever happens; what a turn of the loop waits for both is a part of it.
+TEST(BrakeBoard, TheSlowestModbusActuatorsThatMayBeNamedAnswerInTime) {
+  const auto board = read(R"([brakes]
+[brakes.left]
+backend = "modbus"
+bus = "/dev/ttyUSB0"
+timeout_ms = 50
+measured_register = 2
+enable_coil = 1
+[brakes.right]
+backend = "modbus"
+bus = "/dev/ttyUSB0"
+timeout_ms = 50
+unit = 2
+measured_register = 2
+enable_coil = 1
+)");
+  ASSERT_TRUE(board) << describe(board.error());
+  EXPECT_EQ(150ms, longest_wait(board->left)) << "coil, target and position";
+  EXPECT_LE(longest_wait(board->left) + longest_wait(board->right), 300ms);
+  EXPECT_EQ(0ms, longest_wait(BrakeLine{}));
+}
+
 TEST(BrakeBoard, MistakesAreNamedWithTheirPlace) {
   EXPECT_THAT(complaint(""), HasSubstr("backend"));
   EXPECT_THAT(complaint("backend = \"pwm\"\n"), HasSubstr("sysfs_pwm"));
@@ -115,6 +138,7 @@ TEST(BrakeBoard, MistakesAreNamedWithTheirPlace) {
               HasSubstr("same pulse"));
   EXPECT_THAT(complaint("backend = \"autopilot\"\n"), HasSubstr("output"));
   EXPECT_THAT(complaint("backend = \"modbus\"\n"), HasSubstr("bus"));
+  EXPECT_THAT(complaint("backend = \"modbus\"\nbus = \"/dev/ttyUSB0\"\ntimeout_ms = 51\n"), HasSubstr("50"));
   EXPECT_THAT(complaint("backend = \"sim\"\nchannel = 3\n"), HasSubstr("channel"));  // it has none
   EXPECT_THAT(complaint("backend = \"sim\"\nslew_per_s = 3\n"), HasSubstr("slew_per_s"));
   EXPECT_THAT(complaint("backend = \"sim\"\nlocked_us = 1180\n"), HasSubstr("same pulse"));
