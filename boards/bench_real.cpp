@@ -78,7 +78,8 @@ class RealMachine final : public BenchMachine {
   hal::Result<std::unique_ptr<hal::DigitalOut>> open_out(const BenchLine& line) override {
     if (!UsbBridges::named(line.chip)) return hal::open_gpio_out(config_of(line));
     FORAGER_TRY(plain(line));
-    return bridges_.output(line.chip, line.line, line.active_low, line.keep_at_end);
+    return bridges_.output(line.chip, line.line,
+                           {.active_low = line.active_low, .keep_at_end = line.keep_at_end});
   }
   hal::Result<std::unique_ptr<hal::DigitalIn>> open_in(const BenchLine& line) override {
     if (!UsbBridges::named(line.chip)) return hal::open_gpio_in(config_of(line));

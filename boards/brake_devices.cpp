@@ -81,7 +81,7 @@ class Devices final : public BrakeDevices {
   }
 
   BrakeDeviceOptions options_;
-  UsbBridges bridges_;  // before what stands on them
+  UsbBridges bridges_;                          // before what stands on them
   std::unique_ptr<hal::SoftwarePwm> software_;  // one thread for both
   Hardware left_hardware_;                      // before the brakes, which borrow it
   Hardware right_hardware_;
@@ -129,8 +129,7 @@ hal::Result<> Devices::open_pca9685(const BrakeBoard& board, const BrakeLine& li
                                        servo::Pca9685Config{.address = line.address, .period = board.period});
   shared_bus_ = line.bus;
   shared_address_ = line.address;
-  const hal::Instant now = options_.clock.now();
-  FORAGER_TRY(options_.take_over ? own.pca9685->adopt(now) : own.pca9685->open(now));
+  FORAGER_TRY(own.pca9685->adopt(options_.clock.now()));  // one that holds a brake locked goes on
   return attach(own.pca9685->channel(line.channel), line, brake);
 }
 
@@ -139,7 +138,7 @@ hal::Result<> Devices::open_software(const BrakeBoard& board) {
   std::vector<hal::SoftwarePwmLine> lines;
   hal::Duration patience = kStale;
   for (const BrakeLine* line : {&board.left, &board.right}) {
-    patience += line->backend == BrakeBackend::modbus ? 2 * line->timeout : hal::Duration::zero();
+    patience += longest_wait(*line);
     if (line->backend != BrakeBackend::software_pwm) continue;
     auto out = hal::open_gpio_out({.chip = line->chip, .line = line->line, .active_low = line->active_low});
     if (!out) return hal::fail(std::move(out).error());
@@ -190,16 +189,19 @@ hal::Result<> Devices::open_modbus(const BrakeLine& line, Hardware& own, Hardwar
   return {};
 }
 
-// Whether the line is let go of or kept at the end of the program must not change what the brake does: a
-// spring-applied one locks inactive, the other kind locks active and keeps it.
+// Neither the beginning nor the end of the program may let a brake go: a spring-applied one locks inactive,
+// the other kind locks active, from the request of its line on, and keeps it.
 hal::Result<> Devices::open_gpio(const BrakeLine& line, Hardware& own, Brake& brake) {
   const bool opens = line.when_active == servo::WhenActive::opens;
-  auto out = UsbBridges::named(line.chip)
-                 ? bridges_.output(line.chip, line.line, line.active_low, !opens)
-                 : hal::open_gpio_out({.chip = line.chip,
-                                       .line = line.line,
-                                       .active_low = line.active_low,
-                                       .at_end = opens ? hal::GpioAtEnd::inactive : hal::GpioAtEnd::as_is});
+  auto out =
+      UsbBridges::named(line.chip)
+          ? bridges_.output(line.chip, line.line,
+                            {.active_low = line.active_low, .keep_at_end = !opens, .begin_active = !opens})
+          : hal::open_gpio_out({.chip = line.chip,
+                                .line = line.line,
+                                .active_low = line.active_low,
+                                .begin_active = !opens,
+                                .at_end = opens ? hal::GpioAtEnd::inactive : hal::GpioAtEnd::as_is});
   if (!out) return hal::fail(std::move(out).error());
   own.gpio = *std::move(out);
   brake.actuator = std::make_unique<servo::DigitalBrake>(*own.gpio, line.when_active);
@@ -236,9 +238,12 @@ hal::Result<> Devices::open_brake(const BrakeBoard& board, const BrakeLine& line
 
 hal::Result<> Devices::update(hal::Instant now) {
   if (software_) software_->feed();
-  for (Hardware* hardware : {&left_hardware_, &right_hardware_})
-    if (hardware->pca9685) FORAGER_TRY(hardware->pca9685->update(now));
-  return {};
+  hal::Result<> first;  // all live, whatever happens to the others
+  for (Hardware* hardware : {&left_hardware_, &right_hardware_}) {
+    if (!hardware->pca9685) continue;
+    if (auto updated = hardware->pca9685->update(now); !updated && first) first = std::move(updated);
+  }
+  return first;
 }
 
 }  // namespace

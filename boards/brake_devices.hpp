@@ -14,7 +14,7 @@
 namespace forager::hal {
 class Hid;
 class Kernel;
-}
+}  // namespace forager::hal
 
 namespace forager::boards {
 
@@ -38,12 +38,12 @@ struct BrakeDeviceOptions {
   flight::MavlinkServos* autopilot = nullptr;  // for backend "autopilot"
   hal::Kernel* kernel = nullptr;               // null: Linux
   hal::Hid* hid = nullptr;                     // where USB bridges are found; null: this machine
-  bool take_over = false;  // a PCA9685 that runs keeps its other outputs; else it starts with all off
 };
 
-// Opens both, sharing what they share (one I2C bus, one PWM chip, one Modbus line). Moves nothing; the brake
-// pair that borrows them locks both. Errors: those of the backends; invalid_state (backend "autopilot"
-// without one).
+// Opens both, sharing what they share (one I2C bus, one PWM chip, one Modbus line). Lets go of nothing that
+// an earlier program left locked: PWM by the kernel and a PCA9685 that runs go on, and a line whose brake
+// locks while it is active begins active. Opens none; the brake pair that borrows them locks both. Errors:
+// those of the backends; invalid_state (backend "autopilot" without one).
 [[nodiscard]] hal::Result<std::unique_ptr<BrakeDevices>> open_brake_devices(
     const BrakeBoard& board, const BrakeDeviceOptions& options);
 

@@ -45,7 +45,6 @@ class BrakeTask final : public Task {
   BrakeTask(BrakeBoard board, bool left, const BrakeDeviceOptions& options)
       : board_(std::move(board)), left_(left), options_(options) {
     (left ? board_.right : board_.left) = {.backend = BrakeBackend::sim};
-    options_.take_over = true;
   }
   hal::Result<> attempt(hal::Instant now) override {
     if (!devices_) {

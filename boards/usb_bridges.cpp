@@ -71,12 +71,12 @@ hal::Result<UsbBridges::Pin> UsbBridges::pin(const std::string& place, const std
 }
 
 hal::Result<std::unique_ptr<hal::DigitalOut>> UsbBridges::output(const std::string& place,
-                                                                 const std::string& line, bool active_low,
-                                                                 bool keep_at_end) {
+                                                                 const std::string& line,
+                                                                 hal::Mcp2221Pin wanted) {
   const auto found = pin(place, line);
   if (!found) return hal::fail(found.error());
-  return found->bridge->output(
-      {.number = found->number, .active_low = active_low, .keep_at_end = keep_at_end});
+  wanted.number = found->number;
+  return found->bridge->output(wanted);
 }
 
 hal::Result<std::unique_ptr<hal::DigitalIn>> UsbBridges::input(const std::string& place,

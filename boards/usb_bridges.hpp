@@ -27,12 +27,12 @@ class UsbBridges {
   // Whether `place` names a bridge.
   [[nodiscard]] static bool named(std::string_view place);
 
-  // What they hand out may not outlive this object. Errors: those of Hid::open() and Mcp2221::open();
-  // invalid_argument (a line that is not GP0 to GP3).
+  // The number of a pin is that of its line. What they hand out may not outlive this object. Errors: those of
+  // Hid::open() and Mcp2221::open(); invalid_argument (a line that is not GP0 to GP3).
   [[nodiscard]] hal::Result<std::unique_ptr<hal::I2c>> i2c(const std::string& place, hal::Duration timeout);
   [[nodiscard]] hal::Result<std::unique_ptr<hal::DigitalOut>> output(const std::string& place,
-                                                                     const std::string& line, bool active_low,
-                                                                     bool keep_at_end);
+                                                                     const std::string& line,
+                                                                     hal::Mcp2221Pin pin);
   [[nodiscard]] hal::Result<std::unique_ptr<hal::DigitalIn>> input(const std::string& place,
                                                                    const std::string& line, bool active_low);
 

@@ -30,7 +30,8 @@ struct Mcp2221Config {
 struct Mcp2221Pin {
   std::uint8_t number = 0;  // 0 to 3: GP0 to GP3
   bool active_low = false;
-  bool keep_at_end = false;  // outputs: the level stays when the object ends; else they end inactive
+  bool keep_at_end = false;   // outputs: the level stays when the object ends; else they end inactive
+  bool begin_active = false;  // outputs: the first level
 };
 
 // An MCP2221A: four pins and an I2C bus at the end of a USB cable, so that a computer without pins can drive
@@ -49,8 +50,8 @@ class Mcp2221 {
   Mcp2221(const Mcp2221&) = delete;
   Mcp2221& operator=(const Mcp2221&) = delete;
 
-  // Pins borrow the bridge. An output begins inactive without a spike. Errors: invalid_argument (no such
-  // pin), busy (the pin is open already), those of an exchange.
+  // Pins borrow the bridge. An output begins at its first level, without a spike. Errors: invalid_argument
+  // (no such pin), busy (the pin is open already), those of an exchange.
   [[nodiscard]] Result<std::unique_ptr<DigitalOut>> output(const Mcp2221Pin& pin);
   [[nodiscard]] Result<std::unique_ptr<DigitalIn>> input(const Mcp2221Pin& pin);
   // They change together, in one report.

@@ -56,7 +56,7 @@ Result<Mcp2221::Lease> Mcp2221::lease(std::span<const Mcp2221Pin> wanted, bool i
       return refuse(ErrorCode::invalid_argument, fmt::format("GP{}: the chip has GP0 to GP3", pin.number));
     if (seen.at(pin.number)) return refuse(ErrorCode::busy, fmt::format("GP{} is in use", pin.number));
     seen.at(pin.number) = true;
-    pins.at(pin.number) = input ? kPinInput : pin.active_low ? kPinHigh : std::uint8_t{0};
+    pins.at(pin.number) = input ? kPinInput : pin.begin_active != pin.active_low ? kPinHigh : std::uint8_t{0};
   }
   // Use, direction and level in one report: no spike. The other pins are told what they do now.
   Report request{};

@@ -33,12 +33,13 @@ struct GpioLineConfig {
   GpioDrive drive = GpioDrive::push_pull;  // outputs only
   GpioEdges edges = GpioEdges::none;       // inputs only
   Duration debounce{};                     // inputs only; 0: none
+  bool begin_active = false;               // outputs only: requested active, without a spike
   GpioAtEnd at_end = GpioAtEnd::inactive;  // outputs only
   std::string consumer = "forager";        // what others see who ask who holds the line
 };
 
-// A line of a GPIO chip of the kernel, by libgpiod. An output is requested inactive, without a spike. Lines
-// are held exclusively for as long as the object lives.
+// A line of a GPIO chip of the kernel, by libgpiod. An output is requested inactive, or active where the
+// configuration says so, without a spike. Lines are held exclusively for as long as the object lives.
 //
 // Errors of opening: not_present (no such chip, or no line of that name), invalid_argument (two lines of that
 // name; a number the chip does not have), busy (somebody holds the line: the message says who), permission,
@@ -48,8 +49,8 @@ struct GpioLineConfig {
 [[nodiscard]] Result<std::unique_ptr<DigitalIn>> open_gpio_in(const GpioLineConfig& config);
 // With GpioEdges::none this is an invalid_argument.
 [[nodiscard]] Result<std::unique_ptr<EdgeIn>> open_gpio_edges(const GpioLineConfig& config);
-// All of one chip, requested together and set in one call: at most 64. Active-low, bias and drive are those
-// of the first and must be the same for all.
+// All of one chip, requested together and set in one call: at most 64. Active-low, bias, drive and
+// the first level are those of the first and must be the same for all.
 [[nodiscard]] Result<std::unique_ptr<DigitalOutGroup>> open_gpio_group(
     const std::vector<GpioLineConfig>& lines);
 

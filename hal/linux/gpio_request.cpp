@@ -30,8 +30,8 @@ Result<> check_gpio_group(const std::vector<GpioLineConfig>& lines) {
   const GpioLineConfig& first = lines.front();
   for (const GpioLineConfig& line : lines)
     if (line.chip != first.chip || line.active_low != first.active_low || line.bias != first.bias ||
-        line.drive != first.drive)
-      return refuse("the lines differ in chip, polarity, bias or drive");
+        line.drive != first.drive || line.begin_active != first.begin_active)
+      return refuse("the lines differ in chip, polarity, bias, drive or first level");
   return {};
 }
 

@@ -90,8 +90,9 @@ Result<Request> request(const std::vector<GpioLineConfig>& configs, int type) {
     gpiod_line_bulk_add(&made.lines, *line);
   }
   const gpiod_line_request_config how{first.consumer.c_str(), type, flags_of(first)};
-  const std::array<int, GPIOD_LINE_BULK_MAX_LINES> inactive{};
-  if (gpiod_line_request_bulk(&made.lines, &how, inactive.data()) == 0) return made;
+  std::array<int, GPIOD_LINE_BULK_MAX_LINES> levels{};
+  levels.fill(first.begin_active ? 1 : 0);
+  if (gpiod_line_request_bulk(&made.lines, &how, levels.data()) == 0) return made;
   const int error = errno;
   for (unsigned i = 0; i < gpiod_line_bulk_num_lines(&made.lines); ++i) {
     gpiod_line* line = gpiod_line_bulk_get_line(&made.lines, i);

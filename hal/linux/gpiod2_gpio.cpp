@@ -68,7 +68,8 @@ Settings settings_of(const GpioLineConfig& config, bool output) {
   gpiod_line_settings* raw = settings.get();
   gpiod_line_settings_set_direction(raw, output ? GPIOD_LINE_DIRECTION_OUTPUT : GPIOD_LINE_DIRECTION_INPUT);
   gpiod_line_settings_set_active_low(raw, config.active_low);
-  gpiod_line_settings_set_output_value(raw, GPIOD_LINE_VALUE_INACTIVE);
+  gpiod_line_settings_set_output_value(
+      raw, config.begin_active ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
   constexpr std::array kBias{GPIOD_LINE_BIAS_AS_IS, GPIOD_LINE_BIAS_DISABLED, GPIOD_LINE_BIAS_PULL_UP,
                              GPIOD_LINE_BIAS_PULL_DOWN};
   constexpr std::array kDrive{GPIOD_LINE_DRIVE_PUSH_PULL, GPIOD_LINE_DRIVE_OPEN_DRAIN,

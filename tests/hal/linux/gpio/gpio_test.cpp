@@ -69,6 +69,13 @@ TEST_F(Gpio, AnOutputMayKeepItsLevelAtItsEnd) {
   EXPECT_FALSE(line(2).used);
 }
 
+TEST_F(Gpio, AnOutputMayBeginActiveWithoutASpike) {
+  const auto out =
+      open_gpio_out({.chip = "gpiochip4", .line = "2", .active_low = true, .begin_active = true});
+  ASSERT_TRUE(out) << describe(out.error());
+  EXPECT_THAT(line(2).history, ElementsAre(false));
+}
+
 TEST_F(Gpio, SaysWhoHoldsABusyLine) {
   line(5).used = true;
   line(5).consumer = "spi0 CS1";
