@@ -157,18 +157,36 @@ right = { backend = "modbus", bus = "127.0.0.1:1", timeout_ms = 20 }
   EXPECT_EQ(last_state(result.out)["left"], 1.0);
 }
 
+class CmdBrakeOnKernelPwm : public CmdBrakeOnABoard {
+ protected:
+  // Two servos, and nothing that happens by itself.
+  std::vector<std::string> watch() {
+    const auto line = [&](int channel) {
+      return "{ backend = \"sysfs_pwm\", chip = \"" + tree_.chip() +
+             "\", channel = " + std::to_string(channel) + " }\n";
+    };
+    return {"brake",   "watch",
+            "--arm",   "--json",
+            "--board", board("guard_timeout_ms = 10000\n[brakes]\nleft = " + line(0) + "right = " + line(1))};
+  }
+  test::SysfsTree tree_;
+};
+
+TEST_F(CmdBrakeOnKernelPwm, TwoProgramsExcludeEachOther) {
+  Program first(watch());
+  ASSERT_TRUE(first.wait_for_out("\"state\":\"engaged\"", 10s)) << first.so_far().err;
+  const ProgramResult second = run_program(watch());
+  EXPECT_NE(second.exit_code, 0);
+  EXPECT_THAT(second.err, AllOf(HasSubstr("pwmchip0/0"), HasSubstr("(forager) drives this channel")));
+  first.send_signal(SIGINT);
+  EXPECT_EQ(first.finish().exit_code, 0);
+}
+
 // It is held all the time, and cannot be told any more when the program ends.
-TEST_F(CmdBrakeOnABoard, ALastLockThatFailsIsAFailure) {
-  const test::SysfsTree tree;
-  const auto line = [&](int channel) {
-    return "{ backend = \"sysfs_pwm\", chip = \"" + tree.chip() + "\", channel = " + std::to_string(channel) +
-           " }\n";
-  };
-  const std::string file =
-      board("guard_timeout_ms = 10000\n[brakes]\nleft = " + line(0) + "right = " + line(1));
-  Program program({"brake", "watch", "--arm", "--board", file, "--json"});
+TEST_F(CmdBrakeOnKernelPwm, ALastLockThatFailsIsAFailure) {
+  Program program(watch());
   ASSERT_TRUE(program.wait_for_out("\"state\":\"engaged\"", 10s)) << program.so_far().err;
-  std::filesystem::remove(tree.chip() + "/pwm1/duty_cycle");
+  std::filesystem::remove(tree_.chip() + "/pwm1/duty_cycle");
   program.send_signal(SIGINT);
   const ProgramResult result = program.finish();
   EXPECT_EQ(result.exit_code, 1) << result.out;
