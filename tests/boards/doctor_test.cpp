@@ -68,7 +68,7 @@ class DoctorTest : public testing::Test {
     kernel_.files[path] = std::make_shared<TextFile>(text, refuse);
   }
   Check host(const std::string& name) {
-    return only(name, [this](const Doctor& doctor) { check_host(doctor); });
+    return only(name, [](const Doctor& doctor) { check_host(doctor); });
   }
   Check board(const std::string& name, const Board& board) {
     return only(name, [&board](const Doctor& doctor) { check_outputs(doctor, board); });
