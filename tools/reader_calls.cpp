@@ -48,7 +48,7 @@ hal::Result<advannet::Reply> ReaderCalls::ask(hal::HttpRequest request) {
       blame(request, {hal::ErrorCode::invalid_state, {}, {}, StopSignal::name(), "Ended by a signal"}));
 }
 
-hal::Result<advannet::Reply> ReaderCalls::demand(hal::HttpRequest request) {
+hal::Result<advannet::Reply> ReaderCalls::demand(const hal::HttpRequest& request) {
   auto reply = ask(request);
   if (!reply || reply->ok) return reply;
   return hal::fail(blame(request, {hal::ErrorCode::refused,

@@ -18,7 +18,7 @@ class ReaderCalls {
   // invalid_state after a stop signal.
   [[nodiscard]] hal::Result<reader::advannet::Reply> ask(hal::HttpRequest request);
   // The same, and a refusal is an error (refused).
-  [[nodiscard]] hal::Result<reader::advannet::Reply> demand(hal::HttpRequest request);
+  [[nodiscard]] hal::Result<reader::advannet::Reply> demand(const hal::HttpRequest& request);
   // The device to talk to: the named one, or the only one. Errors: those of demand(); not_present;
   // invalid_argument (several, none named).
   [[nodiscard]] hal::Result<reader::advannet::Device> find_device(const std::string& wanted);
