@@ -127,15 +127,19 @@ class Fit {
   // Derivatives of all figures at a point, by differences: forwards, or to both sides (twice the price).
   hal::Result<std::array<std::vector<double>, kParameters>> slopes(const Point& at,
                                                                    const std::vector<double>* here) {
+    const auto value_at = [&](const Point& point) -> hal::Result<std::vector<double>> {
+      if (here != nullptr && point == at) return *here;
+      return differences(point);
+    };
     std::array<std::vector<double>, kParameters> out;
     for (std::size_t i = 0; i < kParameters; ++i) {
       Point up = at;
       Point down = at;
       up[i] = std::min(up[i] + kStep[i], kHighest[i]);
       if (here == nullptr || up[i] == at[i]) down[i] = std::max(down[i] - kStep[i], kLowest[i]);
-      const auto above = up == at ? hal::Result<std::vector<double>>(*here) : differences(up);
+      const auto above = value_at(up);
       if (!above) return hal::fail(above.error());
-      const auto below = down == at ? hal::Result<std::vector<double>>(*here) : differences(down);
+      const auto below = value_at(down);
       if (!below) return hal::fail(below.error());
       for (std::size_t f = 0; f < above->size(); ++f)
         out[i].push_back(((*above)[f] - (*below)[f]) / (up[i] - down[i]));
