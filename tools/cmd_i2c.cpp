@@ -33,6 +33,7 @@ std::byte byte_of(const std::string& text) {
 
 std::string hex_of(const std::vector<std::byte>& bytes) {
   std::vector<std::string> texts;
+  texts.reserve(bytes.size());
   for (const std::byte byte : bytes) texts.push_back(fmt::format("{:02x}", std::to_integer<unsigned>(byte)));
   return fmt::format("{}", fmt::join(texts, " "));
 }
@@ -97,6 +98,7 @@ int read_chip(const I2cCommand& command, const boards::BenchChip& chip, hal::I2c
                                         : bus.write_read(chip.address, std::span(&reg, 1), bytes);
   if (!read) return complain(read.error());
   std::vector<unsigned> numbers;
+  numbers.reserve(bytes.size());
   for (const std::byte byte : bytes) numbers.push_back(std::to_integer<unsigned>(byte));
   output.record({{"event", "read"}, {"chip", chip.name}, {"register", command.reg}, {"bytes", numbers}});
   output.line(
