@@ -95,8 +95,8 @@ SocketRig::~SocketRig() {
 }
 
 // Links are given ten times as long as they have on a vehicle, because a busy machine may keep these programs
-// waiting ten times as long in their own time. The air is better than the laboratory's, so that chance leaves few of
-// the tags unread: 37 or more of the 40 over two hundred seeds.
+// waiting ten times as long in their own time. The air is better than the laboratory's, so that chance leaves
+// few of the tags unread: 37 or more of the 40 over two hundred seeds.
 void SocketRig::write_scene(const Options& options) const {
   std::ofstream(file("aisle.toml")) << fmt::format(R"(base = "{}/scenes/lab.toml"
 [scene]
