@@ -125,7 +125,7 @@ void check_rules(const Doctor& doctor) {
   for (const std::string folder : {"/etc/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"})
     for (const std::string& name : doctor.kernel.list(folder))
       if (name == "99-forager.rules" || name == "99-com.rules")  // of Raspberry Pi OS
-        return doctor.ok(kArea, "udev rules", folder + "/" + name);
+        return doctor.ok(kArea, "udev rules", fmt::format("{}/{}", folder, name));
   doctor.warn(kArea, "udev rules", "neither 99-forager.rules nor 99-com.rules is installed",
               "sudo cp boards/99-forager.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo "
               "udevadm trigger");

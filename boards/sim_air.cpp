@@ -16,6 +16,7 @@ hal::Result<mocks::AntennaPattern> pattern_of(const SceneRadio& radio) {
     return AntennaPattern::cosine_squared(radio.beam_horizontal_rad, radio.beam_vertical_rad);
   const auto cut = [](const std::vector<ScenePatternSample>& samples) {
     std::vector<mocks::PatternSample> powers;
+    powers.reserve(samples.size());
     for (const ScenePatternSample& sample : samples)
       powers.push_back({sample.angle_rad, std::pow(10.0, 0.1 * sample.gain_db)});
     return powers;
