@@ -15,7 +15,7 @@ namespace forager::boards {
 [[nodiscard]] SceneLinks read_links(ConfigReader table);
 [[nodiscard]] SceneWorld read_world(ConfigReader table);
 void read_pattern(ConfigReader& radio, SceneRadio& into);  // the pattern keys of [world.radio]
-[[nodiscard]] SceneStore read_store(ConfigReader table);  // [world.generate]
-[[nodiscard]] SceneSkip read_skip(ConfigReader table);    // [world.skip]
+[[nodiscard]] SceneStore read_store(ConfigReader table);   // [world.generate]
+[[nodiscard]] SceneSkip read_skip(ConfigReader table);     // [world.skip]
 
 }  // namespace forager::boards

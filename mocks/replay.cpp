@@ -42,8 +42,12 @@ hal::Result<hal::Fields> Replay::call(std::string_view device, std::string_view 
                                       const hal::Fields& asked) {
   Queue& calls = queue(device, operation);
   const auto differs = [&](hal::ErrorCode code, std::string detail) {
-    hal::Error error{code, std::string(device), text_of(operation, asked), std::move(detail),
-                     "The driver does not do what it did when this was recorded", 0};
+    hal::Error error{code,
+                     std::string(device),
+                     text_of(operation, asked),
+                     std::move(detail),
+                     "The driver does not do what it did when this was recorded",
+                     0};
     if (!difference_) difference_ = error;
     return hal::fail(std::move(error));
   };

@@ -22,8 +22,9 @@ int tags_read(const Json& summary) { return summary.value("tags_read", -1); }
 // Well under way: something was found, more is to come.
 bool found_some(const ProgramResult& so_far) { return tags_decided_on(so_far.out) >= 8; }
 
-// Two hundred seeds in process read 37 to 40 of the 40 tags; what differs over sockets is when each byte arrives,
-// so every draw of the air falls differently. Five tags are more than twice the widest difference seen.
+// Two hundred seeds in process read 37 to 40 of the 40 tags; what differs over sockets is when each byte
+// arrives, so every draw of the air falls differently. Five tags are more than twice the widest difference
+// seen.
 TEST_F(SocketMission, FindsWhatTheSameMissionInOneProgramFinds) {
   SocketRig rig;
   rig.start_reader();
