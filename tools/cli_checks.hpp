@@ -6,8 +6,8 @@
 
 namespace forager::tools {
 
-// A whole number from `least` (or 0) to `most`, decimal digits and nothing else: neither "-1" nor "5x" nor "0x10" is taken
-// for something its author may not have meant.
+// A whole number from `least` (or 0) to `most`, decimal digits and nothing else: neither "-1" nor "5x" nor
+// "0x10" is taken for something its author may not have meant.
 struct WholeNumber : CLI::Validator {
   explicit WholeNumber(std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
   WholeNumber(std::uint64_t least, std::uint64_t most);

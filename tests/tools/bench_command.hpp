@@ -24,4 +24,15 @@ inline void expect_refusal(const std::vector<std::string>& arguments, int exit_c
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
+struct Refusal {
+  std::vector<std::string> arguments;
+  int exit_code;
+  const char* says;
+};
+
+inline void expect_refusals(const std::vector<Refusal>& refusals) {
+  for (const Refusal& refusal : refusals)
+    expect_refusal(refusal.arguments, refusal.exit_code, testing::HasSubstr(refusal.says));
+}
+
 }  // namespace forager::tools

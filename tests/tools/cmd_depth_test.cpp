@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/tools/program.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/socket_rig.hpp"
 
 namespace forager::tools {
@@ -61,11 +61,11 @@ TEST(CmdDepth, ASceneBringsItsOwnShelves) {
 }
 
 TEST(CmdDepth, RefusesWhatCannotWork) {
-  const ProgramResult endless = run_program({"depth", "watch"});
-  EXPECT_EQ(endless.exit_code, 2);
-  EXPECT_THAT(endless.err, HasSubstr("--for"));
-  EXPECT_EQ(run_program({"depth"}).exit_code, 2);
-  EXPECT_EQ(run_program({"depth", "frame", "--scene", "no/such.toml"}).exit_code, 3);
+  expect_refusals({
+      {{"depth"}, 2, "frame, watch"},
+      {{"depth", "watch"}, 2, "--for"},
+      {{"depth", "frame", "--scene", "no/such.toml"}, 3, "no/such.toml"},
+  });
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hal/linux/pseudo_terminal.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
 
@@ -68,26 +69,13 @@ TEST(CmdMavlink, RawPrintsFramesAsTheyCame) {
 }
 
 TEST(CmdMavlink, RefusesWhatCannotWork) {
-  struct Case {
-    std::vector<std::string> arguments;
-    int exit_code;
-    const char* says;
-  };
-  const std::vector<Case> cases{
+  expect_refusals({
       {{"mavlink"}, 2, "listen"},
       {{"mavlink", "listen"}, 2, "--for"},
       {{"mavlink", "listen", "--for", "1", "--ask", "NONSENSE"}, 2, "NONSENSE"},
       {{"mavlink", "listen", "--for", "1", "--baud", "9600"}, 2, "--serial"},
       {{"mavlink", "listen", "--for", "1", "--listen", "nowhere"}, 2, "HOST:PORT"},
-  };
-  for (const Case& it : cases) {
-    SCOPED_TRACE(testing::PrintToString(it.arguments));
-    const ProgramResult result = run_program(it.arguments);
-    EXPECT_EQ(result.exit_code, it.exit_code) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, HasSubstr(it.says));
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-  }
+  });
 }
 
 class CmdMavlinkOverSockets : public SocketTest {

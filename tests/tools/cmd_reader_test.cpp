@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/scratch_folder.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
 
@@ -98,12 +99,7 @@ TEST(CmdReader, StartStopAndInputs) {
 }
 
 TEST(CmdReader, RefusesWhatCannotWork) {
-  struct Case {
-    std::vector<std::string> arguments;
-    int exit_code;
-    const char* says;
-  };
-  const std::vector<Case> cases{
+  expect_refusals({
       {{"reader"}, 2, "info, watch, start, stop, gpio"},
       {{"reader", "watch"}, 2, "--for"},
       {{"reader", "watch", "--for", "soon"}, 2, "soon"},
@@ -113,15 +109,7 @@ TEST(CmdReader, RefusesWhatCannotWork) {
       {{"reader", "watch", "--for", "1", "--ports", "33"}, 2, "33"},
       {{"reader", "gpio", "set", "1", "--hold", "1s"}, 2, "--arm"},
       {{"reader", "info", "--board", "no/such.toml"}, 3, "no/such.toml"},
-  };
-  for (const Case& it : cases) {
-    SCOPED_TRACE(testing::PrintToString(it.arguments));
-    const ProgramResult result = run_program(it.arguments);
-    EXPECT_EQ(result.exit_code, it.exit_code) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, HasSubstr(it.says));
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-  }
+  });
 }
 
 // Against `forager emulate reader` over real sockets.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hal/linux/pseudo_terminal.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
 
@@ -142,27 +143,14 @@ TEST_F(CmdSerialTest, AnAdapterThatIsUnpluggedEndsIt) {
 }
 
 TEST(CmdSerial, RefusesWhatCannotWork) {
-  struct Case {
-    std::vector<std::string> arguments;
-    int exit_code;
-    const char* says;
-  };
-  const std::vector<Case> cases{
+  expect_refusals({
       {{"serial"}, 2, "list, watch, terminal, echo, loopback, baud"},
       {{"serial", "watch"}, 2, "device"},
       {{"serial", "watch", "/dev/ttyUSB77"}, 3, "/dev/ttyUSB77"},
       {{"serial", "watch", "/dev/ttyUSB77", "--format", "9N1"}, 2, "9N1"},
       {{"serial", "terminal", "/dev/ttyUSB77"}, 2, "--arm"},
       {{"serial", "baud", "/dev/ttyUSB77", "--rates", "fast"}, 2, "fast"},
-  };
-  for (const Case& it : cases) {
-    SCOPED_TRACE(testing::PrintToString(it.arguments));
-    const ProgramResult result = run_program(it.arguments);
-    EXPECT_EQ(result.exit_code, it.exit_code) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_THAT(result.err, HasSubstr(it.says));
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-  }
+  });
 }
 
 TEST(CmdSerial, ListNamesPortsOrSaysThatThereAreNone) {
