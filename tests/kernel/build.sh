@@ -8,11 +8,6 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=tests/kernel/packages.sh
 source "$here/packages.sh"
 
-if [ "$(uname -m)" != x86_64 ]; then
-  say "User-Mode Linux runs on x86-64 only, and this is $(uname -m)"
-  exit 3
-fi
-
 package=$(meant_by linux-source)
 version=$(candidate "${package:-none}")
 key=$({ gcc --version && cat "$here"/{uml.config,*.patch,modules/*,build.sh}; } | sha256sum | cut -c 1-16)
@@ -30,9 +25,8 @@ dpkg-deb --fsys-tarfile "$package"_*.deb | tar -xO --wildcards '*/linux-source-*
     --exclude='*/arch/*/boot/dts' --exclude='*/Documentation/*.rst' --exclude='*/tools/testing'
 for patch in "$here"/*.patch; do patch -s -p1 -d source <"$patch" >&2; done
 
-compiler=gcc
-if command -v ccache >/dev/null; then compiler='ccache gcc'; fi
-build() { make -s -C source ARCH=um O="$work/build" CC="$compiler" -j "$(nproc)" "$@" >&2; }
+# What costs is the build, not the guest: little optimisation saves a fifth, and ccache would cost a third.
+build() { make -s -C source ARCH=um O="$work/build" KCFLAGS=-O1 -j "$(nproc)" "$@" >&2; }
 
 say "building"
 build KCONFIG_ALLCONFIG="$here/uml.config" allnoconfig
