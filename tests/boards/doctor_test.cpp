@@ -10,7 +10,10 @@
 #include "mocks/sim_i2c_bus.hpp"
 #include "mocks/sim_pca9685.hpp"
 #include "mocks/text_journal.hpp"
+#include "mocks/virtual_clock.hpp"
+#include "tests/hal/linux/fake_i2c_node.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
+#include "tests/hal/linux/fake_pwm_chip.hpp"
 
 namespace forager::boards {
 namespace {
@@ -172,7 +175,7 @@ TEST_F(DoctorTest, PwmChannelsAreLookedUpAndNotTouched) {
   file("/sys/class/pwm/pwmchip0/export", "", EACCES);
   const Check forbidden = board("servo tilt", with_servo(channel_of("pwmchip0", 1)));
   EXPECT_EQ(forbidden.state, CheckState::failed);
-  EXPECT_EQ(forbidden.text, "no permission to write to /sys/class/pwm/pwmchip0");
+  EXPECT_EQ(forbidden.text, "/sys/class/pwm/pwmchip0: the operating system forbids it [Permission denied]");
 }
 
 TEST_F(DoctorTest, ADriverOfTheKernelThatHoldsTheUsbBridgeIsNamed) {

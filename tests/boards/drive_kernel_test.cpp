@@ -14,6 +14,7 @@
 #include "mocks/virtual_clock.hpp"
 #include "servo/pwm_brake.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
+#include "tests/hal/linux/fake_pwm_chip.hpp"
 
 namespace forager::boards {
 namespace {

@@ -19,7 +19,9 @@
 #include "mocks/sim_pca9685.hpp"
 #include "mocks/virtual_clock.hpp"
 #include "tests/hal/linux/fake_gpio_kernel.hpp"
+#include "tests/hal/linux/fake_i2c_node.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
+#include "tests/hal/linux/fake_pwm_chip.hpp"
 
 // The real backends of brakes above a fake kernel, and the pins below it.
 namespace forager::boards {

@@ -22,7 +22,9 @@
 #include "mocks/text_journal.hpp"
 #include "servo/pca9685.hpp"
 #include "tests/hal/linux/fake_gpio_kernel.hpp"
+#include "tests/hal/linux/fake_i2c_node.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
+#include "tests/hal/linux/fake_pwm_chip.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace forager::boards {

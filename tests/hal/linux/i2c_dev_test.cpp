@@ -7,6 +7,7 @@
 
 #include "mocks/sim_i2c_bus.hpp"
 #include "mocks/sim_pca9685.hpp"
+#include "tests/hal/linux/fake_i2c_node.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
 
 namespace forager::hal {

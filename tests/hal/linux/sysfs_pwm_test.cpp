@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mocks/virtual_clock.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
+#include "tests/hal/linux/fake_pwm_chip.hpp"
 #include "tests/hal/pwm_contract.hpp"
 
 namespace forager::hal {
