@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "boards/bench_board.hpp"
+#include "boards/serial_bench.hpp"
 
 namespace forager::boards {
 namespace {
@@ -126,6 +127,20 @@ hal::Result<BenchChip> find_chip(const BenchBoard& board, const std::string& tex
   if (read_bus_and_address(text, chip.bus, chip.address)) return chip;
   return unknown("chip", text, "is neither a name of the board file nor BUS@ADDRESS",
                  names_of(board.chips) + "; or write for example 1@0x40; addresses are 0x08 to 0x77");
+}
+
+hal::Result<BenchSerial> find_serial(const BenchBoard& board, const std::string& text) {
+  if (const BenchSerial* serial = named(board.serials, text)) return *serial;
+  if (text.find('/') != std::string::npos) return BenchSerial{.name = text, .port = text};
+  return unknown("serial line", text, "is neither a name of the board file nor the path of a port",
+                 names_of(board.serials) + "; or write for example /dev/ttyUSB0");
+}
+
+hal::SerialSettings settings_of(const BenchSerial& serial) {
+  return {.baud = static_cast<std::uint32_t>(serial.baud),
+          .parity = serial.parity == 'E'   ? hal::Parity::even
+                    : serial.parity == 'O' ? hal::Parity::odd
+                                           : hal::Parity::none};
 }
 
 }  // namespace forager::boards

@@ -33,6 +33,11 @@ std::vector<std::string> forbidden_chips(const Doctor& doctor) {
   return forbidden;
 }
 
+void forbid(const Doctor& doctor, const std::string& name, const std::string& what) {
+  doctor.fail(kArea, name, what + ": the operating system forbids it [Permission denied]",
+              std::string(kRules));
+}
+
 std::string chips_of(const std::vector<LineFacts>& lines) {
   std::vector<std::string> chips;
   for (const LineFacts& line : lines) {
@@ -45,13 +50,17 @@ std::string chips_of(const std::vector<LineFacts>& lines) {
 void check_line(const Doctor& doctor, const BenchLine& wanted) {
   const std::string name = "gpio " + wanted.name;
   const auto lines = doctor.machine.lines();
-  if (!lines) return doctor.fail(kArea, name, lines.error());
+  if (!lines) {
+    const auto forbidden = forbidden_chips(doctor);
+    if (lines.error().code == hal::ErrorCode::permission && !forbidden.empty())
+      return forbid(doctor, name, fmt::format("{}", fmt::join(forbidden, ", ")));
+    return doctor.fail(kArea, name, lines.error());
+  }
   const bool chip_there = std::any_of(lines->begin(), lines->end(),
                                       [&](const LineFacts& line) { return is_chip(line, wanted.chip); });
   if (!chip_there) {
     if (const auto forbidden = forbidden_chips(doctor); !forbidden.empty())
-      return doctor.fail(kArea, name, fmt::format("no permission to open {}", fmt::join(forbidden, ", ")),
-                         std::string(kRules));
+      return forbid(doctor, name, fmt::format("{}", fmt::join(forbidden, ", ")));
     return doctor.fail(kArea, name,
                        fmt::format("there is no GPIO chip \"{}\"; {}", wanted.chip, chips_of(*lines)),
                        "Write the label of one of them as chip = of the board file");
@@ -101,7 +110,7 @@ void check_sysfs(const Doctor& doctor, const std::string& name, const PwmPlace& 
   const std::string folder = "/sys/class/pwm/" + chip->chip;
   if (!writable(doctor, folder + "/export") ||
       !writable(doctor, fmt::format("{}/pwm{}/duty_cycle", folder, place.channel)))
-    return doctor.fail(kArea, name, "no permission to write to " + folder, std::string(kRules));
+    return forbid(doctor, name, folder);
   const auto running = std::find_if(chip->exported.begin(), chip->exported.end(),
                                     [&place](const auto& line) { return line.channel == place.channel; });
   if (running == chip->exported.end() || !running->enabled)

@@ -3,16 +3,17 @@
 
 #include <array>
 
+#include "boards/autopilot_line.hpp"
 #include "boards/bench_devices.hpp"
 #include "boards/doctor.hpp"
 #include "boards/reader_bench.hpp"
+#include "boards/serial_bench.hpp"
 #include "flight/mavlink/parser.hpp"
 #include "flight/mavlink_autopilot.hpp"
 #include "hal/journal.hpp"
 #include "hal/linux/curl_http_client.hpp"
 #include "hal/linux/serial_port.hpp"
 #include "hal/linux/tcp_stream.hpp"
-#include "hal/linux/udp_peer.hpp"
 #include "reader/advannet_rest.hpp"
 
 namespace forager::boards {
@@ -107,13 +108,6 @@ void check_stream(const Doctor& doctor, const Board& board) {
   doctor.ok(kArea, "reader stream", fmt::format("{} is open", stream->name()));
 }
 
-hal::SerialSettings settings_of(const BenchSerial& serial) {
-  return {.baud = static_cast<std::uint32_t>(serial.baud),
-          .parity = serial.parity == 'E'   ? hal::Parity::even
-                    : serial.parity == 'O' ? hal::Parity::odd
-                                           : hal::Parity::none};
-}
-
 // What came in on a line, and whether it makes sense.
 struct Heard {
   std::size_t bytes = 0;
@@ -121,7 +115,7 @@ struct Heard {
   std::uint64_t frames = 0;
 };
 
-hal::Result<Heard> listen(const Doctor& doctor, hal::SerialPort& port, SerialPeer peer) {
+hal::Result<Heard> listen(const Doctor& doctor, hal::ByteStream& port, SerialPeer peer) {
   Heard heard;
   hal::Result<> failed;
   flight::mavlink::Parser parser;
@@ -148,22 +142,21 @@ hal::Result<Heard> listen(const Doctor& doctor, hal::SerialPort& port, SerialPee
   return heard;
 }
 
-void check_port(const Doctor& doctor, const std::string& name, const BenchSerial& serial) {
-  const auto port = hal::open_serial_port({.device = serial.port, .line = settings_of(serial)},
-                                          doctor.machine.clock(), doctor.kernel);
-  if (const auto opened = port->open(); !opened) return doctor.fail(kArea, name, opened.error());
-  const auto heard = listen(doctor, *port, serial.peer);
+// A line that somebody talks on unasked: whether what comes makes sense tells a wrong baud rate from a cable.
+void check_line(const Doctor& doctor, const std::string& name, hal::ByteStream& port, const std::string& line,
+                SerialPeer peer) {
+  if (const auto opened = port.open(); !opened) return doctor.fail(kArea, name, opened.error());
+  const auto heard = listen(doctor, port, peer);
   if (!heard) return doctor.fail(kArea, name, heard.error());
-  const std::string line = fmt::format("{} at {}", serial.port, to_string(settings_of(serial)));
-  if (serial.peer == SerialPeer::silent) return doctor.ok(kArea, name, line + " opens");
-  const char* what = serial.peer == SerialPeer::mavlink ? "MAVLink" : "text";
+  if (peer == SerialPeer::silent) return doctor.ok(kArea, name, line + " opens");
+  const char* what = peer == SerialPeer::mavlink ? "MAVLink" : "text";
   if (heard->bytes == 0)
     return doctor.fail(
         kArea, name, fmt::format("{}: not one byte in {} s", line, hal::to_seconds(kListen)),
         "Check the other end's power, that RX and TX cross, and that its port is switched to " +
             std::string(what));
   const bool sense =
-      serial.peer == SerialPeer::mavlink ? heard->frames > 0 : heard->printable * 10 >= heard->bytes * 9;
+      peer == SerialPeer::mavlink ? heard->frames > 0 : heard->printable * 10 >= heard->bytes * 9;
   if (!sense)
     return doctor.fail(
         kArea, name,
@@ -172,13 +165,20 @@ void check_port(const Doctor& doctor, const std::string& name, const BenchSerial
   doctor.ok(kArea, name, fmt::format("{}: {} is heard", line, what));
 }
 
-// An autopilot on a serial port talks unasked: whether it does tells a wrong baud rate from a cable.
+void check_serial(const Doctor& doctor, const BenchSerial& serial) {
+  const hal::SerialSettings line = settings_of(serial);
+  const auto port =
+      hal::open_serial_port({.device = serial.port, .line = line}, doctor.machine.clock(), doctor.kernel);
+  check_line(doctor, "serial " + serial.name, *port, fmt::format("{} at {}", serial.port, to_string(line)),
+             serial.peer);
+}
+
+// By the line that a mission would open, flow control included.
 void check_autopilot_port(const Doctor& doctor, const Board& board) {
-  BenchSerial serial;
-  serial.port = board.autopilot_serial;
-  serial.baud = static_cast<int>(board.autopilot_line.baud);
-  serial.peer = SerialPeer::mavlink;
-  check_port(doctor, "autopilot", serial);
+  const auto port = open_autopilot_line(board);
+  check_line(doctor, "autopilot", *port,
+             fmt::format("{} at {}", board.autopilot_serial, to_string(board.autopilot_line)),
+             SerialPeer::mavlink);
 }
 
 }  // namespace
@@ -193,7 +193,7 @@ void check_reader(const Doctor& doctor, const Board& board) {
 void check_autopilot(const Doctor& doctor, const Board& board) {
   if (board.kind == BoardKind::sim) return doctor.skip(kArea, "autopilot", "emulated in this process");
   if (!board.autopilot_serial.empty()) return check_autopilot_port(doctor, board);
-  const auto stream = hal::open_udp_peer(board.autopilot.host, board.autopilot.port);
+  const auto stream = open_autopilot_line(board);
   hal::NullJournal journal;
   hal::Clock& clock = doctor.machine.clock();
   flight::MotorBay bay;
@@ -215,7 +215,7 @@ void check_autopilot(const Doctor& doctor, const Board& board) {
 }
 
 void check_serials(const Doctor& doctor, const Board& board) {
-  for (const BenchSerial& serial : board.bench.serials) check_port(doctor, "serial " + serial.name, serial);
+  for (const BenchSerial& serial : board.bench.serials) check_serial(doctor, serial);
 }
 
 }  // namespace forager::boards

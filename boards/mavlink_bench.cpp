@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "boards/autopilot_line.hpp"
 #include "boards/device_set.hpp"
 #include "hal/linux/serial_port.hpp"
 #include "hal/linux/udp_peer.hpp"
@@ -53,7 +54,7 @@ hal::Result<std::unique_ptr<MavlinkBench>> open_mavlink_bench(const Board& board
     if (!devices) return hal::fail(std::move(devices).error());
     return std::make_unique<EmulatedLine>(*std::move(devices));
   }
-  return std::make_unique<RealLine>(hal::open_udp_peer(board.autopilot.host, board.autopilot.port), false);
+  return std::make_unique<RealLine>(open_autopilot_line(board), !board.autopilot_serial.empty());
 }
 
 }  // namespace forager::boards

@@ -81,7 +81,7 @@ int test_serial(const SelftestCommand& command) {
   serial.baud = command.baud;
   serial.bytes = command.count;
   serial.json = command.target.json;
-  const auto settings = settings_of(serial);
+  const auto settings = settings_of(serial, {});
   return settings ? run_serial_loopback(serial, *settings) : complain(settings.error());
 }
 

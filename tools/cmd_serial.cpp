@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "boards/board.hpp"
 #include "boards/serial_bench.hpp"
 #include "tools/bench_session.hpp"
 #include "tools/cli_checks.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 using Command = std::shared_ptr<SerialCommand>;
 
-int run_list(const SerialCommand& command) {
+int run_list(const SerialCommand& command, const boards::BenchBoard& names) {
   BenchOutput out(command.json);
   const auto ports = boards::serial_ports();
   for (const auto& port : ports) {
@@ -32,14 +33,28 @@ int run_list(const SerialCommand& command) {
     for (const std::string& name : port.by_id) out.line(fmt::format("  {}", name));
   }
   if (ports.empty()) fmt::print(stderr, "forager: this machine has no serial port\n");
+  for (const boards::BenchSerial& line : names.serials) {
+    const std::string settings = to_string(boards::settings_of(line));
+    out.record({{"event", "name"}, {"name", line.name}, {"device", line.port}, {"line", settings}});
+    out.line(fmt::format("{} is {} at {}", line.name, line.port, settings));
+  }
   return kExitDone;
 }
 
-int run(const SerialCommand& command) {
-  if (command.task == SerialTask::list) return run_list(command);
+int run(SerialCommand command) {
+  boards::BenchBoard names;
+  if (!command.board.empty()) {
+    auto board = boards::load_board(command.board);
+    if (!board) return complain(board.error());
+    names = std::move(board->bench);
+  }
+  if (command.task == SerialTask::list) return run_list(command, names);
   if (command.task == SerialTask::terminal && !command.arm)
     return complain_not_armed("what you type will be sent");
-  const auto settings = settings_of(command);
+  const auto line = boards::find_serial(names, command.device);
+  if (!line) return complain(line.error());
+  command.device = line->port;
+  const auto settings = settings_of(command, boards::settings_of(*line));
   if (!settings) return complain(settings.error());
   switch (command.task) {
     case SerialTask::loopback:
@@ -60,15 +75,17 @@ CLI::App* add_task(CLI::App& serial, const char* name, const char* what, SerialT
   command = std::make_shared<SerialCommand>();
   command->task = task;
   CLI::App* sub = serial.add_subcommand(name, what);
+  sub->add_option("--board", command->board, "Board file that names serial lines");
   sub->add_flag("--json", command->json, "JSON lines on stdout");
   sub->callback([command, &exit_code] { exit_code = run(*command); });
   if (task == SerialTask::list) return sub;
-  sub->add_option("device", command->device, "Port, best by its name in /dev/serial/by-id")->required();
+  sub->add_option("device", command->device,
+                  "Name of the board file, or a port, best as /dev/serial/by-id/...")
+      ->required();
   if (task != SerialTask::baud)
-    sub->add_option("--baud", command->baud, "Bits a second")
-        ->capture_default_str()
+    sub->add_option("--baud", command->baud, "Bits a second; the board file's, or 115200")
         ->check(WholeNumber(12'000'000));
-  sub->add_option("--format", command->format, "Data bits, parity, stop bits")->capture_default_str();
+  sub->add_option("--format", command->format, "Data bits, parity, stop bits; the board file's, or 8N1");
   sub->add_flag("--rts-cts", command->hardware_flow, "Hardware flow control");
   return sub;
 }

@@ -136,21 +136,23 @@ bool printable(std::byte byte) {
   return (c >= 0x20 && c < 0x7F) || c == '\n' || c == '\r' || c == '\t';
 }
 
-hal::Result<hal::SerialSettings> settings_of(const SerialCommand& command) {
+hal::Result<hal::SerialSettings> settings_of(const SerialCommand& command, const hal::SerialSettings& line) {
   const auto wrong = [&] {
-    return hal::fail(hal::ErrorCode::invalid_argument, "serial", "--format " + command.format,
+    return hal::fail(hal::ErrorCode::invalid_argument, "serial", "--format " + *command.format,
                      "is not data bits, parity and stop bits", "Such as 8N1, 8E1 or 7O2");
   };
-  const std::string& text = command.format;
-  constexpr std::string_view kParities = "NEO";
-  if (text.size() != 3 || text[0] < '5' || text[0] > '8' ||
-      kParities.find(text[1]) == std::string_view::npos || text[2] < '1' || text[2] > '2')
-    return wrong();
-  hal::SerialSettings settings;
-  settings.baud = command.baud;
-  settings.data_bits = static_cast<std::uint8_t>(text[0] - '0');
-  settings.parity = static_cast<hal::Parity>(kParities.find(text[1]));
-  settings.stop_bits = static_cast<std::uint8_t>(text[2] - '0');
+  hal::SerialSettings settings = line;
+  if (command.baud) settings.baud = *command.baud;
+  if (command.format) {
+    const std::string& text = *command.format;
+    constexpr std::string_view kParities = "NEO";
+    if (text.size() != 3 || text[0] < '5' || text[0] > '8' ||
+        kParities.find(text[1]) == std::string_view::npos || text[2] < '1' || text[2] > '2')
+      return wrong();
+    settings.data_bits = static_cast<std::uint8_t>(text[0] - '0');
+    settings.parity = static_cast<hal::Parity>(kParities.find(text[1]));
+    settings.stop_bits = static_cast<std::uint8_t>(text[2] - '0');
+  }
   settings.flow = command.hardware_flow ? hal::FlowControl::hardware : hal::FlowControl::none;
   FORAGER_TRY(check(settings, command.device));
   return settings;

@@ -16,9 +16,10 @@ enum class SerialTask : std::uint8_t { list, watch, terminal, echo, loopback, ba
 
 struct SerialCommand {
   SerialTask task = SerialTask::list;
-  std::string device;
-  std::uint32_t baud = 115200;
-  std::string format = "8N1";
+  std::string board{};                  // file whose names count; empty: none
+  std::string device;                   // a name of it, or a path; run with settings_of() it is a path
+  std::optional<std::uint32_t> baud{};  // empty: the board file's, or 115200
+  std::optional<std::string> format{};  // empty: the board file's, or "8N1"
   bool hardware_flow = false;
   double for_s = 0.0;
   bool hex = false;
@@ -29,8 +30,9 @@ struct SerialCommand {
   bool arm = false;                    // terminal: bytes may be sent
 };
 
-// "8N1", "7E2". Errors: invalid_argument.
-[[nodiscard]] hal::Result<hal::SerialSettings> settings_of(const SerialCommand& command);
+// What the command says, on top of what the board file says of the line. Errors: invalid_argument.
+[[nodiscard]] hal::Result<hal::SerialSettings> settings_of(const SerialCommand& command,
+                                                           const hal::SerialSettings& line);
 
 inline constexpr hal::Duration kSerialTick = std::chrono::milliseconds(2);
 

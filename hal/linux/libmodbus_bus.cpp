@@ -99,7 +99,10 @@ Result<> LibmodbusBus::ready(std::uint8_t unit) {
   }
   const int error = errno;
   const ErrorCode code = error == ECONNREFUSED ? ErrorCode::refused : code_of_device_errno(error);
-  return fail(code, name_, "connect", std::string(to_string(code)),
+  const std::string_view why = code == ErrorCode::not_present  ? "there is no such port"
+                               : code == ErrorCode::permission ? "the operating system forbids it"
+                                                               : to_string(code);
+  return fail(code, name_, "connect", std::string(why),
               code == ErrorCode::permission ? "Join the group dialout, and log in again"
                                             : "Check the port's name, the cable and the device's power",
               error);

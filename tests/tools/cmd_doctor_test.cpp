@@ -24,6 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::Not;
 
 // The line a check printed, and the mend below it.
@@ -72,11 +73,11 @@ TEST_F(CmdDoctor, NoPermission) {
   folder_.write("dev/gpiochip0", "");
   const ProgramResult result = examine(kButton, machine);
   EXPECT_EQ(result.exit_code, 4) << result.err;
-  EXPECT_THAT(
+  EXPECT_EQ(
       told(result.out, "gpio stop_button"),
-      AllOf(HasSubstr("failed "), HasSubstr("the operating system forbids it [Permission denied]"),
-            HasSubstr("mend: Install boards/99-forager.rules into /etc/udev/rules.d and join the group gpio; "
-                      "then log in again")));
+      "failed   board    gpio stop_button: gpiochip0: the operating system forbids it [Permission denied]\n"
+      "                  mend: Install boards/99-forager.rules into /etc/udev/rules.d and join the group "
+      "gpio; then log in again");
 }
 
 TEST_F(CmdDoctor, WrongChipName) {
@@ -109,12 +110,16 @@ TEST_F(CmdDoctor, ReaderUnreachable) {
                                    "socket")},
                   FakeMachine{}.options());
   EXPECT_EQ(result.exit_code, 4);
-  for (const char* check : {"reader", "reader stream"})
-    EXPECT_THAT(told(result.out, check),
-                AllOf(HasSubstr("failed "), HasSubstr("unreachable: "), HasSubstr("127.0.0.1:1"),
-                      HasSubstr("mend: Check the reader's power and network cable, reader.host")));
-  EXPECT_THAT(told(result.out, "autopilot"),
-              AllOf(HasSubstr("failed "), HasSubstr("no heartbeat within 3 s")));
+  const std::string why =
+      "unreachable: nobody listens there [Connection refused]\n"
+      "                  mend: Check the reader's power and network cable, reader.host of the board file, "
+      "and "
+      "ping it";
+  EXPECT_EQ(told(result.out, "reader"), "failed   board    reader: http http://127.0.0.1:1: " + why);
+  EXPECT_EQ(told(result.out, "reader stream"), "failed   board    reader stream: tcp 127.0.0.1:1: " + why);
+  EXPECT_EQ(told(result.out, "autopilot"),
+            "failed   board    autopilot: udp 127.0.0.1:9: no heartbeat within 3 s\n"
+            "                  mend: Check its power, the link, and autopilot.address of the board file");
 }
 
 // The far end of a serial line, which talks all the time.
@@ -152,16 +157,43 @@ std::string serial(const std::string& port, const std::string& speaks) {
          "\"\n";
 }
 
+constexpr const char* kOtherRate =
+    "\x80\xf8\x1c\x9e\x03\xe0\xfe\x98";  // what text at another rate looks like
+
+std::string wrong_baud(const std::string& name, const std::string& line, const std::string& what) {
+  return "failed   board    " + name + ": " + line + ": [0-9]+ bytes came and make no " + what +
+         ": wrong baud rate\n"
+         "                  mend: Set the same baud rate and parity at both ends: baud = of the board file";
+}
+
 TEST_F(CmdDoctor, WrongBaud) {
-  const Talker talker("\x80\xf8\x1c\x9e\x03\xe0\xfe\x98");  // text at another rate looks like this
-  for (const char* speaks : {"mavlink", "text"}) {
+  const Talker talker(kOtherRate);
+  for (const auto& [speaks, what] : {std::pair{"mavlink", "MAVLink"}, std::pair{"text", "text"}}) {
     const ProgramResult result = examine(serial(talker.port(), speaks));
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(told(result.out, "serial telemetry"),
-                AllOf(HasSubstr("failed "), HasSubstr("at 57600 8N1: "), HasSubstr("bytes came and make no "),
-                      HasSubstr(": wrong baud rate\n"),
-                      HasSubstr("mend: Set the same baud rate and parity at both ends")));
+                MatchesRegex(wrong_baud("serial telemetry", talker.port() + " at 57600 8N1", what)));
   }
+}
+
+// An autopilot on a serial line is listened to by the line that a mission opens.
+TEST_F(CmdDoctor, AnAutopilotAtAnotherBaudRateOrUnplugged) {
+  const Talker talker(kOtherRate);
+  const auto on = [this](const std::string& port) {
+    return run_program(
+        {"doctor", board("[autopilot]\nserial = \"" + port + "\"\nflow = \"hardware\"\n", "socket")},
+        FakeMachine{}.options());
+  };
+  const ProgramResult wrong = on(talker.port());
+  EXPECT_EQ(wrong.exit_code, 4);
+  EXPECT_THAT(told(wrong.out, "autopilot"),
+              MatchesRegex(wrong_baud("autopilot", talker.port() + " at 57600 8N1 rts/cts", "MAVLink")));
+  const ProgramResult gone = on("/dev/ttyACM77");
+  EXPECT_EQ(gone.exit_code, 4);
+  EXPECT_EQ(
+      told(gone.out, "autopilot"),
+      "failed   board    autopilot: serial /dev/ttyACM77: there is no such port [No such file or directory]\n"
+      "                  mend: Check the cable and the name; see what there is: ls -l /dev/serial/by-id");
 }
 
 TEST_F(CmdDoctor, ALineThatMakesSenseIsOkAndASilentOneIsNot) {
@@ -179,11 +211,39 @@ TEST_F(CmdDoctor, ALineThatMakesSenseIsOkAndASilentOneIsNot) {
 }
 
 TEST_F(CmdDoctor, DeviceUnplugged) {
-  const ProgramResult result = examine(serial("/dev/ttyUSB77", "mavlink"));
+  const ProgramResult result = examine(serial("/dev/ttyUSB77", "mavlink") +
+                                       "[[modbus]]\nname = \"power\"\nbus = \"/dev/ttyUSB78\"\n"
+                                       "[[modbus.device]]\nname = \"gauge\"\nunit = 4\n"
+                                       "[[modbus.device.register]]\nname = \"charge\"\naddress = 0\n");
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(told(result.out, "serial telemetry"),
-              AllOf(HasSubstr("failed "), HasSubstr("/dev/ttyUSB77"), HasSubstr("No such file or directory"),
-                    HasSubstr("mend: ")));
+  EXPECT_EQ(
+      told(result.out, "serial telemetry"),
+      "failed   board    serial telemetry: serial /dev/ttyUSB77: there is no such port [No such file or "
+      "directory]\n"
+      "                  mend: Check the cable and the name; see what there is: ls -l /dev/serial/by-id");
+  if (!built_with("libmodbus")) GTEST_SKIP() << "built without libmodbus";
+  EXPECT_EQ(told(result.out, "modbus gauge"),
+            "failed   board    modbus gauge: modbus /dev/ttyUSB78: there is no such port [No such file or "
+            "directory]\n"
+            "                  mend: Check the port's name, the cable and the device's power");
+}
+
+std::string text_of(const std::string& page) {
+  std::ifstream in(std::string(FORAGER_SOURCE_DIR) + "/" + page);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Who has the README and the doctor's output finds what it says, and what to do about it.
+TEST(DoctorPage, HasTheSixFaultsInTheDoctorsWordsAndTheReadmeLeadsThere) {
+  const std::string docs = text_of("docs/doctor.md");
+  for (const char* words :
+       {"the operating system forbids it [Permission denied]",
+        "there is no GPIO chip \"pinctrl-bcm2835\"; there are pinctrl-bcm2711 (gpiochip0)",
+        "busy, \"spi0 CS1\" holds the line",
+        "unreachable: ", "bytes came and make no MAVLink: wrong baud rate", "there is no such port"})
+    EXPECT_THAT(docs, HasSubstr(words));
+  EXPECT_THAT(text_of("README.md"),
+              AllOf(HasSubstr("forager doctor robot.toml"), HasSubstr("(docs/doctor.md)")));
 }
 
 TEST_F(CmdDoctor, JsonHasEveryCheckAndASummary) {

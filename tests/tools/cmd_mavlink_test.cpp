@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hal/linux/pseudo_terminal.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
@@ -98,21 +100,28 @@ TEST_F(CmdMavlinkOverSockets, SilenceIsExplained) {
   EXPECT_THAT(result.err, HasSubstr(std::to_string(rig_.mavlink_port)));
 }
 
+// The port by itself, and by the board file that a mission takes it from.
 TEST(CmdMavlinkSerial, BytesThatAreNoFramesPointAtTheBaudRate) {
   auto far = hal::open_pseudo_terminal();
   ASSERT_TRUE(far);
   static_cast<void>((*far)->open());
-  Program program({"mavlink", "listen", "--serial", (*far)->port(), "--baud", "57600", "--for", "1500ms"});
-  program.wait_until(
-      [&](const ProgramResult&) {
-        static_cast<void>((*far)->poll());
-        static_cast<void>((*far)->write(std::as_bytes(std::span(std::string_view("\x12\x34\x56 no frame")))));
-        return false;
-      },
-      20s);
-  const ProgramResult result = program.finish();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("another baud rate"));
+  const test::ScratchFolder folder;
+  const std::string board = folder.write(
+      "robot.toml", "[board]\nname = \"robot\"\n[autopilot]\nserial = \"" + (*far)->port() + "\"\n");
+  for (const auto& [option, place] : {std::pair{"--serial", (*far)->port()}, std::pair{"--board", board}}) {
+    Program program({"mavlink", "listen", option, place, "--for", "1200ms"});
+    program.wait_until(
+        [&](const ProgramResult&) {
+          static_cast<void>((*far)->poll());
+          static_cast<void>(
+              (*far)->write(std::as_bytes(std::span(std::string_view("\x12\x34\x56 no frame")))));
+          return false;
+        },
+        20s);
+    const ProgramResult result = program.finish();
+    EXPECT_EQ(result.exit_code, 1) << option;
+    EXPECT_THAT(result.err, HasSubstr("another baud rate")) << option;
+  }
 }
 
 TEST(CmdMavlinkSerial, APortThatIsNotThereIsNamed) {
