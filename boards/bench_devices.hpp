@@ -55,6 +55,11 @@ class BenchPwm {
   [[nodiscard]] virtual hal::Result<> update(hal::Instant now) = 0;
 };
 
+enum class PwmStart : std::uint8_t {
+  anew,       // a chip on a bus is set up, all its outputs off first
+  take_over,  // one that runs goes on: for whoever ends what a dead program left
+};
+
 // Where a bench command finds its lines, channels and buses: this machine, or an emulation of one. What it
 // opens may not outlive it.
 class BenchMachine {
@@ -70,7 +75,8 @@ class BenchMachine {
   [[nodiscard]] virtual hal::Result<std::unique_ptr<hal::EdgeIn>> open_edges(const BenchLine& line) = 0;
 
   [[nodiscard]] virtual hal::Result<std::vector<PwmFacts>> pwm_chips() = 0;
-  [[nodiscard]] virtual hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place) = 0;
+  [[nodiscard]] virtual hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place,
+                                                                        PwmStart start = PwmStart::anew) = 0;
 
   // Paths of the I2C buses there are.
   [[nodiscard]] virtual std::vector<std::string> i2c_buses() = 0;

@@ -48,7 +48,9 @@ class ChipOutput final : public BenchPwm {
         chip_(*bus_, nullptr, journal,
               {.address = place.address, .period = place.period, .inverted = place.inverted}),
         channel_(place.channel) {}
-  hal::Result<> open(hal::Instant now) { return chip_.open(now); }
+  hal::Result<> open(PwmStart start, hal::Instant now) {
+    return start == PwmStart::anew ? chip_.open(now) : chip_.adopt(now);
+  }
   hal::PwmChannel& channel() override { return chip_.channel(channel_); }
   hal::PwmGroup& group() override { return chip_; }
   hal::Result<> update(hal::Instant now) override { return chip_.update(now); }
@@ -90,7 +92,7 @@ class RealMachine final : public BenchMachine {
     return hal::open_gpio_edges(config_of(line, hal::GpioEdges::both));
   }
   hal::Result<std::vector<PwmFacts>> pwm_chips() override;
-  hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place) override;
+  hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place, PwmStart start) override;
   std::vector<std::string> i2c_buses() override;
   hal::Result<std::unique_ptr<hal::I2c>> open_i2c(const std::string& bus, hal::Duration timeout) override {
     if (UsbBridges::named(bus)) return bridges_.i2c(bus, timeout);
@@ -139,12 +141,12 @@ hal::Result<std::vector<PwmFacts>> RealMachine::pwm_chips() {
   return chips;
 }
 
-hal::Result<std::unique_ptr<BenchPwm>> RealMachine::open_pwm(const PwmPlace& place) {
+hal::Result<std::unique_ptr<BenchPwm>> RealMachine::open_pwm(const PwmPlace& place, PwmStart start) {
   if (place.backend == PwmBackend::pca9685) {
     auto bus = open_i2c(place.bus, std::chrono::milliseconds(20));
     if (!bus) return hal::fail(std::move(bus).error());
     auto chip = std::make_unique<ChipOutput>(*std::move(bus), *journal_, place);
-    FORAGER_TRY(chip->open(clock_->now()));
+    FORAGER_TRY(chip->open(start, clock_->now()));
     return chip;
   }
   if (place.backend == PwmBackend::sim)

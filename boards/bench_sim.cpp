@@ -121,7 +121,7 @@ class SimMachine final : public BenchMachine {
   }
   hal::Result<std::unique_ptr<hal::EdgeIn>> open_edges(const BenchLine& line) override;
   hal::Result<std::vector<PwmFacts>> pwm_chips() override;
-  hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place) override;
+  hal::Result<std::unique_ptr<BenchPwm>> open_pwm(const PwmPlace& place, PwmStart start) override;
   std::vector<std::string> i2c_buses() override { return {"sim"}; }
   hal::Result<std::unique_ptr<hal::I2c>> open_i2c(const std::string& bus, hal::Duration timeout) override;
 
@@ -197,7 +197,7 @@ hal::Result<std::vector<PwmFacts>> SimMachine::pwm_chips() {
   return std::vector{std::move(chip)};
 }
 
-hal::Result<std::unique_ptr<BenchPwm>> SimMachine::open_pwm(const PwmPlace& place) {
+hal::Result<std::unique_ptr<BenchPwm>> SimMachine::open_pwm(const PwmPlace& place, PwmStart) {
   if (place.backend != PwmBackend::sim || place.channel > 1)
     return not_here("pwm " + to_string(place), "the outputs sim/0 and sim/1");
   FORAGER_TRY(pwm_.set_period(place.period));

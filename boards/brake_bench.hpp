@@ -19,7 +19,7 @@ class BrakeBench {
   [[nodiscard]] virtual hal::Result<> update(hal::Instant now) = 0;
   // Whether everything that was to be waited for is there: the autopilot's heartbeat.
   [[nodiscard]] virtual bool ready() const = 0;
-  // Locks both: from here on brakes move. Call once, when ready.
+  // Locks both: from here on brakes move. Again, once ready: with no fault known of the time before.
   virtual servo::BrakePair& engage(hal::Instant now) = 0;
   [[nodiscard]] virtual std::string left_text() const = 0;
   [[nodiscard]] virtual std::string right_text() const = 0;

@@ -7,6 +7,7 @@
 #include "boards/brake_bench.hpp"
 #include "boards/brake_devices.hpp"
 #include "boards/esc_bench.hpp"
+#include "boards/guard_task.hpp"
 #include "boards/reader_bench.hpp"
 #include "boards/robot_config.hpp"
 #include "flight/esc_pulse.hpp"
@@ -20,27 +21,13 @@ using namespace std::chrono_literals;
 
 constexpr hal::Duration kTries = 1s;
 constexpr hal::Duration kPause = 2ms;
-constexpr hal::Duration kChipWakes = 5ms;        // a chip that had to be started takes its pulses after this
 constexpr hal::Duration kServoTravels = 2s;      // where pulses end with us
 constexpr hal::Duration kAutopilotAnswers = 3s;  // its heartbeats come once a second
 constexpr hal::Duration kAutopilotHears = 300ms;
 constexpr hal::Duration kReaderAnswers = 3s;
 
-// Something that is to be made safe, with all it takes.
-class Task {
- public:
-  virtual ~Task() = default;
-  // Opens what is not open yet, and tells the output. Errors: those of the output.
-  virtual hal::Result<> attempt(hal::Instant now) = 0;
-  virtual void live(hal::Instant now) = 0;
-  [[nodiscard]] virtual std::string name() const = 0;
-  [[nodiscard]] virtual bool slow() const { return false; }
-  // How long it must be kept alive after it was told.
-  [[nodiscard]] virtual hal::Duration linger() const { return kChipWakes; }
-};
-
 // One brake alone; the other side is a stand-in.
-class BrakeTask final : public Task {
+class BrakeTask final : public GuardTask {
  public:
   BrakeTask(BrakeBoard board, bool left, const BrakeDeviceOptions& options)
       : board_(std::move(board)), left_(left), options_(options) {
@@ -79,7 +66,7 @@ class BrakeTask final : public Task {
 };
 
 // All ESCs of the board: they share a chip.
-class EscTask final : public Task {
+class EscTask final : public GuardTask {
  public:
   EscTask(const EscBoard& board, const BrakeDeviceOptions& options) : board_(board), options_(options) {}
   hal::Result<> attempt(hal::Instant) override {
@@ -106,7 +93,8 @@ class EscTask final : public Task {
   std::unique_ptr<EscBench> bench_;
 };
 
-void try_all(std::vector<std::unique_ptr<Task>>& tasks, std::vector<SafeOutput>& outcome, hal::Clock& clock) {
+void try_all(std::vector<std::unique_ptr<GuardTask>>& tasks, std::vector<SafeOutput>& outcome,
+             hal::Clock& clock) {
   const hal::Deadline enough(clock.now(), kTries);
   std::vector<bool> done(tasks.size(), false);
   while (true) {
@@ -123,7 +111,7 @@ void try_all(std::vector<std::unique_ptr<Task>>& tasks, std::vector<SafeOutput>&
 }
 
 // Chips that had to be started, pulses that end with us, servos that travel.
-void keep_alive(std::vector<std::unique_ptr<Task>>& tasks, hal::Clock& clock) {
+void keep_alive(std::vector<std::unique_ptr<GuardTask>>& tasks, hal::Clock& clock) {
   hal::Duration longest{};
   for (const auto& task : tasks) longest = std::max(longest, task->linger());
   for (const hal::Instant end = clock.now() + longest; clock.now() < end;) {
@@ -198,23 +186,27 @@ bool is_local(BrakeBackend backend) {
 
 }  // namespace
 
-bool has_real_outputs(const Board& board, OutputScope scope) {
+bool has_real_outputs(const Board& board, const OutputScope& scope) {
   return (scope.brakes && board.brakes.named && !all_emulated(board.brakes)) ||
          (scope.escs && board.esc.named && board.esc.output != EscOutput::emulated) ||
-         (scope.reader && board.kind != BoardKind::sim);
+         (scope.reader && board.kind != BoardKind::sim) ||
+         (scope.line && scope.line->chip != "sim" && !scope.line->keep_at_end) ||
+         (scope.pulses && scope.pulses->backend != PwmBackend::sim) ||
+         (scope.servo && scope.servo->place.backend != PwmBackend::sim);
 }
 
-std::vector<SafeOutput> make_outputs_safe(const Board& board, OutputScope scope, hal::Clock& clock,
+std::vector<SafeOutput> make_outputs_safe(const Board& board, const OutputScope& scope, hal::Clock& clock,
                                           hal::Kernel* kernel) {
   hal::NullJournal journal;
   const BrakeDeviceOptions options{.clock = clock, .journal = journal, .kernel = kernel};
-  std::vector<std::unique_ptr<Task>> tasks;
+  std::vector<std::unique_ptr<GuardTask>> tasks;
   if (scope.escs && has_real_outputs(board, {.escs = true}))
     tasks.push_back(std::make_unique<EscTask>(board.esc, options));
   if (scope.brakes && board.brakes.named)
     for (const bool left : {true, false})
       if (is_local((left ? board.brakes.left : board.brakes.right).backend))
         tasks.push_back(std::make_unique<BrakeTask>(board.brakes, left, options));
+  add_bench_tasks(tasks, scope, journal, kernel);
   std::stable_partition(tasks.begin(), tasks.end(), [](const auto& task) { return !task->slow(); });
   std::vector<SafeOutput> outcome(tasks.size());
   try_all(tasks, outcome, clock);

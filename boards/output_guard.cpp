@@ -38,7 +38,7 @@ void say(const std::string& text) {
   static_cast<void>(!::write(STDERR_FILENO, line.data(), line.size()));
 }
 
-void act(const Board& board, OutputScope scope, const std::string& program, hal::Duration timeout,
+void act(const Board& board, const OutputScope& scope, const std::string& program, hal::Duration timeout,
          hal::GuardCause cause) {
   const auto outcome = make_outputs_safe(board, scope, *make_real_clock(1.0));
   say(cause == hal::GuardCause::died ? program + " died"
@@ -50,15 +50,16 @@ void act(const Board& board, OutputScope scope, const std::string& program, hal:
 
 }  // namespace
 
-hal::Duration guard_timeout(const Board& board, OutputScope scope) {
-  if (!scope.brakes && !scope.escs) return std::chrono::hours(24);
+hal::Duration guard_timeout(const Board& board, const OutputScope& scope) {
+  const bool reader_only = !scope.brakes && !scope.escs && !scope.line && !scope.pulses && !scope.servo;
+  if (reader_only) return std::chrono::hours(24);
   hal::Duration timeout = board.guard_timeout;
   if (scope.brakes)
     for (const BrakeLine* line : {&board.brakes.left, &board.brakes.right}) timeout += longest_wait(*line);
   return timeout;
 }
 
-hal::Result<std::unique_ptr<OutputGuard>> OutputGuard::start(const Board& board, OutputScope scope,
+hal::Result<std::unique_ptr<OutputGuard>> OutputGuard::start(const Board& board, const OutputScope& scope,
                                                              const std::string& program) {
   if (!has_real_outputs(board, scope)) return std::make_unique<Unguarded>();
   const hal::Duration timeout = guard_timeout(board, scope);

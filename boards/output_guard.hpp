@@ -19,7 +19,8 @@ class OutputGuard {
 
   // Forks: to be called before devices are opened. `program` is what the messages call it. Errors: io (no
   // more processes).
-  [[nodiscard]] static hal::Result<std::unique_ptr<OutputGuard>> start(const Board& board, OutputScope scope,
+  [[nodiscard]] static hal::Result<std::unique_ptr<OutputGuard>> start(const Board& board,
+                                                                       const OutputScope& scope,
                                                                        const std::string& program);
 
   // From here on something may move: death and silence count. Errors: as feed().
@@ -33,6 +34,6 @@ class OutputGuard {
 // How long a loop that moves these outputs may take at most: the board file's guard_timeout_ms, and the
 // time-outs of slow lines on top, which a loop legally waits for. Where there is nothing but a reader, which
 // is no danger while a loop is late, only death counts: a day.
-[[nodiscard]] hal::Duration guard_timeout(const Board& board, OutputScope scope);
+[[nodiscard]] hal::Duration guard_timeout(const Board& board, const OutputScope& scope);
 
 }  // namespace forager::boards

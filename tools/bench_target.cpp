@@ -18,11 +18,18 @@ hal::Result<BenchPlace> open_place(const BenchTarget& target) {
   if (!target.board.empty()) {
     auto board = boards::load_board(target.board);
     if (!board) return hal::fail(std::move(board).error());
-    place.names = std::move(board->bench);
+    place.board = *std::move(board);
   }
   place.machine = target.board == "sim" ? boards::make_sim_machine(*place.journal, target.real_time)
                                         : boards::make_real_machine(*place.journal);
   return place;
+}
+
+hal::Result<std::unique_ptr<boards::OutputGuard>> guard_output(const BenchPlace& place,
+                                                               const boards::OutputScope& output,
+                                                               const std::string& program) {
+  const boards::OutputScope nothing;
+  return boards::OutputGuard::start(place.board, place.machine->emulated() ? nothing : output, program);
 }
 
 }  // namespace forager::tools

@@ -6,6 +6,7 @@
 
 #include "boards/bench_devices.hpp"
 #include "boards/board.hpp"
+#include "boards/output_guard.hpp"
 #include "hal/error.hpp"
 #include "hal/journal.hpp"
 
@@ -24,13 +25,18 @@ struct BenchTarget {
 // --board and --json; with `timed` also --real-time, for commands that take time.
 void add_target_options(CLI::App* sub, BenchTarget& target, bool timed);
 
-// The machine and the names of a bench command.
+// The machine of a bench command, and the board file with its names.
 struct BenchPlace {
-  boards::BenchBoard names;
+  boards::Board board;
   std::unique_ptr<hal::Journal> journal;  // before the machine, which borrows it
   std::unique_ptr<boards::BenchMachine> machine;
 };
 // Errors: those of load_board(). Opens no device.
 [[nodiscard]] hal::Result<BenchPlace> open_place(const BenchTarget& target);
+
+// Watches over the command that moves this output of the place; to be called before it is opened, and kept
+// for longer than it. Nobody watches on an emulated machine. Errors: those of OutputGuard::start().
+[[nodiscard]] hal::Result<std::unique_ptr<boards::OutputGuard>> guard_output(
+    const BenchPlace& place, const boards::OutputScope& output, const std::string& program);
 
 }  // namespace forager::tools

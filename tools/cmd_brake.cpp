@@ -34,9 +34,13 @@ class BrakeSession {
       : command_(command), clock_(clock), bench_(bench), guard_(guard), output_(output), next_(clock.now()) {}
 
   int run() {
-    if (!wait_until_ready()) return StopSignal::raised() ? kExitFailure : complain_no_autopilot();
     if (const auto armed = guard_.arm(); !armed) return complain(armed.error());
     pair_ = &bench_.engage(clock_.now());
+    if (!bench_.ready()) {
+      pair_->halt();  // what is here locks before anything is waited for
+      if (!wait_until_ready()) return give_up();
+      pair_ = &bench_.engage(clock_.now());
+    }
     if (command_.task == BrakeTask::watch)
       tick_for(command_.for_s > 0.0 ? hal::from_seconds(command_.for_s) : hal::Duration::max(), false);
     else
@@ -72,13 +76,22 @@ class BrakeSession {
       if (!tick() || pair_->state() == servo::BrakeState::faulted) return;
     } while (clock_.now() - start < time);
   }
+  void lock_for_good() {
+    pair_->halt();
+    for (const hal::Instant end = clock_.now() + kLocking; clock_.now() < end;) static_cast<void>(tick());
+  }
+  // Waiting came to its end, and what is here is locked.
+  int give_up() {
+    const bool signalled = StopSignal::raised();
+    lock_for_good();
+    return signalled || failed_ ? kExitFailure : complain_no_autopilot();
+  }
   // Judged after the last lock: it is the one that matters.
   int finish() {
     const bool interrupted = StopSignal::raised();
     const bool faulted = pair_->state() == servo::BrakeState::faulted;
     std::string why = faulted ? pair_->status().reason : std::string();
-    pair_->halt();
-    for (const hal::Instant end = clock_.now() + kLocking; clock_.now() < end;) static_cast<void>(tick());
+    lock_for_good();
     output_.state(clock_.now(), *pair_, bench_);
     const servo::BrakeStatus& status = pair_->status();
     if (!faulted && status.left) why = "left brake at the last lock: " + status.left.detail;

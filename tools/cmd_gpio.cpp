@@ -36,7 +36,7 @@ int list_lines(const GpioCommand& command, BenchPlace& place, BenchOutput& outpu
   for (const LineFacts& line : *lines) {
     if (!command.chip.empty() && command.chip != line.chip && command.chip != line.label) continue;
     any = true;
-    const std::string name = board_name(place.names, line);
+    const std::string name = board_name(place.board.bench, line);
     output.record({{"event", "line"},
                    {"chip", line.chip},
                    {"label", line.label},
@@ -65,7 +65,7 @@ int list_lines(const GpioCommand& command, BenchPlace& place, BenchOutput& outpu
 hal::Result<std::vector<BenchLine>> wanted_lines(const GpioCommand& command, const BenchPlace& place) {
   std::vector<BenchLine> lines;
   for (const std::string& text : command.lines) {
-    auto line = boards::find_line(place.names, text);
+    auto line = boards::find_line(place.board.bench, text);
     if (!line) return hal::fail(std::move(line).error());
     if (command.active_low) line->active_low = true;
     if (command.bias == "up") line->bias = boards::BenchBias::pull_up;
@@ -94,17 +94,25 @@ int read_lines(const std::vector<BenchLine>& lines, BenchPlace& place, BenchOutp
 
 int set_line(const GpioCommand& command, const BenchLine& line, BenchPlace& place, BenchOutput& output) {
   BenchLoop loop(place.machine->clock());
+  const auto guard = guard_output(place, {.line = line}, "forager gpio");
+  if (!guard) return complain(guard.error());
   auto out = place.machine->open_out(line);
   if (!out) return complain(out.error());
+  if (const auto armed = (*guard)->arm(); !armed) return complain(armed.error());
   const bool active = command.level == "on";
   if (const auto set = (*out)->set(active); !set) return complain(set.error());
   output.record({{"event", "set"}, {"name", line.name}, {"active", active}, {"hold_s", command.hold_s}});
   output.line(fmt::format("{}: {} for {:g} s", line.name, level_word(active), command.hold_s));
-  const BenchEnd end = loop.run(hal::from_seconds(command.hold_s), [](hal::Instant) { return true; });
+  hal::Result<> guarded;
+  const BenchEnd end = loop.run(hal::from_seconds(command.hold_s), [&](hal::Instant) {
+    guarded = (*guard)->feed();
+    return guarded.has_value();
+  });
   if (!line.keep_at_end)
     if (const auto safe = (*out)->set(false); !safe) return complain(safe.error());
   out->reset();
   tell_level(output, line.name, line.keep_at_end && active);
+  if (!guarded) return complain(guarded.error());
   return end == BenchEnd::signalled ? complain_signalled(line.name) : kExitDone;
 }
 

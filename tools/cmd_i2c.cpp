@@ -46,7 +46,7 @@ int list_buses(BenchPlace& place, BenchOutput& output) {
   }
   if (buses.empty())
     output.line("this machine has no I2C bus; dtparam=i2c_arm=on, and sudo modprobe i2c-dev");
-  for (const boards::BenchChip& chip : place.names.chips) {
+  for (const boards::BenchChip& chip : place.board.bench.chips) {
     output.record({{"event", "name"}, {"name", chip.name}, {"bus", chip.bus}, {"address", chip.address}});
     output.line(fmt::format("{} is 0x{:02x} of {}", chip.name, chip.address, chip.bus));
   }
@@ -77,7 +77,7 @@ int scan(const I2cCommand& command, BenchPlace& place, BenchOutput& output) {
     const bool taken = !read && read.error().code == hal::ErrorCode::busy;  // by a driver of the kernel
     if (!read && !taken) return complain(read.error());
     ++found;
-    const std::string name = known_at(place.names, bus, address);
+    const std::string name = known_at(place.board.bench, bus, address);
     output.record({{"event", "chip"},
                    {"bus", bus},
                    {"address", address},
@@ -142,7 +142,7 @@ int run_i2c_command(const I2cCommand& command) {
   BenchOutput output(command.target.json);
   if (command.task == I2cTask::list) return list_buses(*place, output);
   if (command.task == I2cTask::scan) return scan(command, *place, output);
-  auto chip = boards::find_chip(place->names, command.chip);
+  auto chip = boards::find_chip(place->board.bench, command.chip);
   if (!chip) return complain(chip.error());
   const auto bus = place->machine->open_i2c(
       chip->bus, chip->name == command.chip && chip->name.find('@') == std::string::npos

@@ -36,7 +36,7 @@ int list_chips(BenchPlace& place, BenchOutput& output) {
     }
   }
   if (chips->empty()) output.line("this machine has no PWM chips");
-  for (const boards::BenchServo& servo : place.names.servos) {
+  for (const boards::BenchServo& servo : place.board.bench.servos) {
     output.record({{"event", "name"}, {"name", servo.name}, {"place", to_string(servo.place)}});
     output.line(fmt::format("{} is {}", servo.name, to_string(servo.place)));
   }
@@ -46,13 +46,18 @@ int list_chips(BenchPlace& place, BenchOutput& output) {
 // One output that makes pulses, and none any more at the end of its object.
 class PulseSession {
  public:
-  PulseSession(const PwmCommand& command, BenchPlace& place, BenchOutput& output)
-      : command_(&command), machine_(place.machine.get()), output_(&output), loop_(machine_->clock()) {}
+  PulseSession(const PwmCommand& command, BenchPlace& place, boards::OutputGuard& guard, BenchOutput& output)
+      : command_(&command),
+        machine_(place.machine.get()),
+        guard_(&guard),
+        output_(&output),
+        loop_(machine_->clock()) {}
 
   int run(const boards::PwmPlace& where) {
     auto opened = machine_->open_pwm(where);
     if (!opened) return complain(opened.error());
     pwm_ = *std::move(opened);
+    if (const auto armed = guard_->arm(); !armed) return complain(armed.error());
     name_ = to_string(where);
     const hal::Instant start = loop_.now();
     const bool sweep = command_->task == PwmTask::sweep;
@@ -82,7 +87,8 @@ class PulseSession {
                                       time_text(time), period_us));
   }
   bool step(hal::Duration pulse, hal::Instant now) {
-    failed_ = pwm_->update(now);
+    failed_ = guard_->feed();
+    if (failed_) failed_ = pwm_->update(now);
     if (failed_) failed_ = pwm_->channel().set_pulse(pulse);
     if (!failed_) return false;
     const auto made = pwm_->channel().pulse();
@@ -106,6 +112,7 @@ class PulseSession {
 
   const PwmCommand* command_;
   boards::BenchMachine* machine_;
+  boards::OutputGuard* guard_;
   BenchOutput* output_;
   BenchLoop loop_;
   std::unique_ptr<boards::BenchPwm> pwm_;
@@ -142,7 +149,7 @@ int run_pwm_command(const PwmCommand& command) {
   if (!place) return complain(place.error());
   BenchOutput output(command.target.json);
   if (command.task == PwmTask::list) return list_chips(*place, output);
-  auto where = boards::find_pwm(place->names, command.output);
+  auto where = boards::find_pwm(place->board.bench, command.output);
   if (!where) return complain(where.error());
   if (command.frequency_hz) where->period = hal::from_seconds(1.0 / *command.frequency_hz);
   const double longest =
@@ -150,7 +157,9 @@ int run_pwm_command(const PwmCommand& command) {
   if (from_us(longest) > where->period)
     return complain_usage(
         fmt::format("a pulse of {:g} us is longer than the period, {:g} us", longest, in_us(where->period)));
-  return PulseSession(command, *place, output).run(*where);
+  const auto guard = guard_output(*place, {.pulses = *where}, "forager pwm");
+  if (!guard) return complain(guard.error());
+  return PulseSession(command, *place, **guard, output).run(*where);
 }
 
 void add_pwm_command(CLI::App& app, int& exit_code) {

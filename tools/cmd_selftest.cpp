@@ -52,9 +52,9 @@ void report(const SelftestCommand& command, const std::string& where,
 }
 
 int test_pins(const SelftestCommand& command, BenchPlace& place, BenchOutput& output) {
-  const auto out_line = boards::find_line(place.names, command.out);
+  const auto out_line = boards::find_line(place.board.bench, command.out);
   if (!out_line) return complain(out_line.error());
-  const auto in_line = boards::find_line(place.names, command.in);
+  const auto in_line = boards::find_line(place.board.bench, command.in);
   if (!in_line) return complain(in_line.error());
   BenchLoop loop(place.machine->clock(), kTick);
   const auto out = place.machine->open_out(*out_line);

@@ -31,11 +31,11 @@ void add_sim_servo(BenchPlace& place) {
   servo.place.backend = boards::PwmBackend::sim;
   servo.config.safe = 0.5;
   servo.config.slew_per_s = 2.0;
-  place.names.servos.push_back(std::move(servo));
+  place.board.bench.servos.push_back(std::move(servo));
 }
 
 int list_servos(const BenchPlace& place, BenchOutput& output) {
-  for (const boards::BenchServo& servo : place.names.servos) {
+  for (const boards::BenchServo& servo : place.board.bench.servos) {
     const bool holds = servo.config.at_halt == servo::AtHalt::hold;
     output.record({{"event", "servo"},
                    {"name", servo.name},
@@ -49,7 +49,7 @@ int list_servos(const BenchPlace& place, BenchOutput& output) {
                             to_string(servo.place), in_us(servo.from), in_us(servo.to),
                             in_us(servo.config.trim), servo.config.safe, holds ? "held" : "released"));
   }
-  if (place.names.servos.empty())
+  if (place.board.bench.servos.empty())
     return complain_usage("no servo is named: give a board file with [[servo]], --board FILE");
   return kExitDone;
 }
@@ -57,15 +57,20 @@ int list_servos(const BenchPlace& place, BenchOutput& output) {
 // Moves one servo; at the end of run() it is at its safe place.
 class ServoSession {
  public:
-  ServoSession(const ServoCommand& command, BenchPlace& place, BenchOutput& output)
-      : command_(&command), machine_(place.machine.get()), output_(&output), loop_(machine_->clock()) {}
+  ServoSession(const ServoCommand& command, BenchPlace& place, boards::OutputGuard& guard,
+               BenchOutput& output)
+      : command_(&command),
+        machine_(place.machine.get()),
+        guard_(&guard),
+        output_(&output),
+        loop_(machine_->clock()) {}
 
-  int run(boards::BenchServo wanted) {
-    if (command_->task == ServoTask::trim) wanted.config.trim = hal::from_seconds(command_->trim_us * 1e-6);
+  int run(const boards::BenchServo& wanted) {
     name_ = wanted.name;
     auto pwm = machine_->open_pwm(wanted.place);
     if (!pwm) return complain(pwm.error());
     pwm_ = *std::move(pwm);
+    if (const auto armed = guard_->arm(); !armed) return complain(armed.error());
     auto map = servo::PulseMap::between({0.0, wanted.from}, {1.0, wanted.to});
     if (!map) return complain(map.error());
     auto made = servo::Servo::create(pwm_->channel(), *std::move(map), wanted.config);
@@ -90,7 +95,8 @@ class ServoSession {
     });
   }
   bool step(double target, hal::Instant now) {
-    failed_ = pwm_->update(now);
+    failed_ = guard_->feed();
+    if (failed_) failed_ = pwm_->update(now);
     if (failed_) failed_ = servo_->move(target, now);
     if (failed_) tell(now);
     return failed_.has_value();
@@ -129,6 +135,7 @@ class ServoSession {
 
   const ServoCommand* command_;
   boards::BenchMachine* machine_;
+  boards::OutputGuard* guard_;
   BenchOutput* output_;
   BenchLoop loop_;
   std::unique_ptr<boards::BenchPwm> pwm_;
@@ -173,9 +180,12 @@ int run_servo_command(const ServoCommand& command) {
   add_sim_servo(*place);
   BenchOutput output(command.target.json);
   if (command.task == ServoTask::list) return list_servos(*place, output);
-  auto servo = boards::find_servo(place->names, command.servo);
+  auto servo = boards::find_servo(place->board.bench, command.servo);
   if (!servo) return complain(servo.error());
-  return ServoSession(command, *place, output).run(*std::move(servo));
+  if (command.task == ServoTask::trim) servo->config.trim = hal::from_seconds(command.trim_us * 1e-6);
+  const auto guard = guard_output(*place, {.servo = *servo}, "forager servo");
+  if (!guard) return complain(guard.error());
+  return ServoSession(command, *place, **guard, output).run(*servo);
 }
 
 void add_servo_command(CLI::App& app, int& exit_code) {

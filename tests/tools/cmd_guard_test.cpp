@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/tools/bench_command.hpp"
+#include "tests/tools/fake_machine.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/sysfs_tree.hpp"
 
@@ -22,6 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using Wall = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
@@ -89,6 +93,24 @@ std::optional<Milliseconds> time_until(Condition condition) {
   return std::nullopt;
 }
 
+// Kills the program once it moves, until it was safe in time.
+void expect_safe_in_time(const std::vector<std::string>& arguments, const ProgramOptions& options,
+                         const std::string& says, const std::function<bool()>& moves,
+                         const std::function<bool()>& safe) {
+  KillTimes times;
+  while (!times.enough()) {
+    Program program(arguments, options);
+    ASSERT_TRUE(program.wait_until([&](const ProgramResult&) { return moves(); }, 20s))
+        << program.so_far().err;
+    program.send_signal(SIGKILL);
+    ASSERT_TRUE(times.add(time_until(safe))) << "not safe after 5 s";
+    const ProgramResult result = program.finish();
+    EXPECT_EQ(result.signal, SIGKILL);
+    EXPECT_THAT(result.err, AllOf(HasSubstr(says), HasSubstr(": safe\n"), Not(HasSubstr("NOT SAFE"))));
+  }
+  times.judge(says);
+}
+
 TEST_F(Guarded, BrakesLockWhenTheProgramIsKilled) {
   const std::string board = brakes("guard_timeout_ms = 10000\n");
   KillTimes times;
@@ -149,6 +171,77 @@ TEST_F(Guarded, EscsAreToldToStopWhenTheProgramIsKilled) {
   program.send_signal(SIGKILL);
   EXPECT_TRUE(time_until([&] { return tree_.pulse_ns(0) == kEscStop && tree_.pulse_ns(1) == kEscStop; }));
   EXPECT_THAT(program.finish().err, AllOf(HasSubstr("forager esc died"), HasSubstr("ESCs: safe")));
+}
+
+TEST_F(Guarded, AServoGoesToItsSafePlaceWhenTheProgramIsKilled) {
+  const std::string board = tree_.folder().write(
+      "servo.toml",
+      fmt::format("[board]\nname = \"bench\"\nguard_timeout_ms = 10000\n[[servo]]\nname = \"tilt\"\n"
+                  "backend = \"sysfs_pwm\"\nchip = \"{}\"\nchannel = 0\nsafe = 0.25\nslew_per_s = 100\n",
+                  tree_.chip()));
+  expect_safe_in_time(
+      {"servo", "set", "tilt", "1", "--hold", "60s", "--arm", "--board", board}, {}, "forager servo died",
+      [&] { return tree_.pulse_ns(0) == 2'000'000; }, [&] { return tree_.pulse_ns(0) == 1'250'000; });
+}
+
+TEST_F(Guarded, PulsesEndWhenTheProgramIsKilled) {
+  const std::string board =
+      tree_.folder().write("pwm.toml", "[board]\nname = \"bench\"\nguard_timeout_ms = 10000\n");
+  expect_safe_in_time(
+      {"pwm", "set", tree_.chip() + "/1", "--us", "1500", "--hold", "60s", "--arm", "--board", board}, {},
+      "forager pwm died", [&] { return tree_.pulse_ns(1) == 1'500'000; },
+      [&] { return tree_.pulse_ns(1) == std::nullopt; });
+}
+
+TEST_F(Guarded, ALineIsInactiveWhenTheProgramIsKilled) {
+  if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  std::filesystem::create_directory(tree_.folder().file("levels"));
+  const std::string board = tree_.folder().write(
+      "gpio.toml",
+      "[board]\nname = \"bench\"\nguard_timeout_ms = 10000\n[[gpio]]\nname = \"lamp\"\n"
+      "chip = \"pinctrl-bcm2711\"\nline = \"GPIO16\"\ndirection = \"out\"\nactive_low = true\n");
+  const FakeMachine machine{.root = tree_.folder().path()};
+  const auto level = [&] { return tree_.folder().read("levels/GPIO16"); };
+  expect_safe_in_time(
+      {"gpio", "set", "lamp", "on", "--hold", "60s", "--arm", "--board", board}, machine.options(),
+      "forager gpio died", [&] { return level() == "0"; }, [&] { return level() == "1"; });
+}
+
+TEST_F(Guarded, AHungBenchCommandIsKilledAndItsServoSafe) {
+  const std::string board = tree_.folder().write(
+      "servo.toml",
+      fmt::format("[board]\nname = \"bench\"\nguard_timeout_ms = 2000\n[[servo]]\nname = \"tilt\"\n"
+                  "backend = \"sysfs_pwm\"\nchip = \"{}\"\nchannel = 0\nslew_per_s = 100\n",
+                  tree_.chip()));
+  Program program({"servo", "set", "tilt", "1", "--hold", "60s", "--arm", "--board", board});
+  ASSERT_TRUE(program.wait_until([&](const ProgramResult&) { return tree_.pulse_ns(0) == 2'000'000; }, 20s))
+      << program.so_far().err;
+  program.send_signal(SIGSTOP);
+  EXPECT_TRUE(time_until([&] { return tree_.pulse_ns(0) == 1'500'000; }));
+  const ProgramResult result = program.finish();
+  EXPECT_EQ(result.signal, SIGKILL);
+  EXPECT_THAT(result.err, HasSubstr("forager servo was silent for 2000 ms, and was killed"));
+}
+
+// One brake is here and the other one on an autopilot that is not heard: the one that is here locks at once,
+// and is locked again should the program die while it waits.
+TEST_F(Guarded, WhileTheAutopilotIsWaitedForTheOtherBrakeIsLocked) {
+  const std::string board = tree_.folder().write(
+      "mixed.toml",
+      fmt::format(
+          "[board]\nname = \"bench\"\nguard_timeout_ms = 10000\n[autopilot]\naddress = \"127.0.0.1:9\"\n"
+          "[brakes]\nleft = {{ backend = \"sysfs_pwm\", chip = \"{}\", channel = 0 }}\n"
+          "right = {{ backend = \"autopilot\", output = 9 }}\n",
+          tree_.chip()));
+  const auto left_locked = [&](const ProgramResult&) { return tree_.pulse_ns(0) == kLeftLocked; };
+  Program program(
+      {"brake", "set", "--arm", "--left", "0", "--hold", "60", "--connect-within", "60", "--board", board});
+  ASSERT_TRUE(program.wait_until(left_locked, 20s)) << program.so_far().err;
+  // Somebody else's doing, as far as the guard is concerned.
+  tree_.folder().write("pwmchip0/pwm0/duty_cycle", std::to_string(kOpen));
+  program.send_signal(SIGKILL);
+  EXPECT_TRUE(time_until([&] { return tree_.pulse_ns(0) == kLeftLocked; })) << "still open after 5 s";
+  EXPECT_THAT(program.finish().err, HasSubstr("forager brake died"));
 }
 
 // What systemd calls when a service ended, however it did.

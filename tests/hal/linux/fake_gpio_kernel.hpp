@@ -45,6 +45,7 @@ class FakeGpio {
     return gpio;
   }
   std::map<int, Chip> chips;  // by number: /dev/gpiochipN
+  static inline void (*driven)(const GpioLine& line) = nullptr;  // called for every level an output is given
 
   void reset() { chips.clear(); }
   [[nodiscard]] std::size_t open_handles() const { return handles_.size(); }
@@ -203,6 +204,7 @@ class FakeGpio {
   static void put(GpioLine& line, bool active) {
     line.level = active != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
     line.history.push_back(line.level);
+    if (driven != nullptr) driven(line);
   }
   int request_lines(Chip& chip, int number, gpiohandle_request& request) {
     for (std::uint32_t i = 0; i < request.lines; ++i)
