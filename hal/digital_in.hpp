@@ -34,8 +34,8 @@ struct Edge {
 class EdgeIn : public DigitalIn {
  public:
   // Takes up to into.size() edges out of the queue, oldest first; 0: none. Never blocks. The kernel keeps 16
-  // edges (its default): when more came between two calls the rest is lost, and two edges in a row may have
-  // the same level. Errors as active().
+  // edges: of more the first 16 by its older interface (libgpiod 1), the last 16 by its newer (libgpiod 2);
+  // where some are lost, two edges in a row may have the same level. Errors as active().
   [[nodiscard]] Result<std::size_t> edges(std::span<Edge> into) { return do_edges(into); }
 
  private:

@@ -72,7 +72,7 @@ bool SimMcp2221::level(std::size_t pin) const {
 std::uint32_t SimMcp2221::i2c_hz() const { return kClockHz / (divider_ + kDividerOffset); }
 
 bool SimMcp2221::output(std::span<const std::byte> report) {
-  if (report.size() != kReportBytes + 1 || report[0] != std::byte{0}) return false;
+  if (report.size() < 2 || report.size() > kReportBytes + 1 || report[0] != std::byte{0}) return false;
   if (hung_) return true;
   Report request{};
   std::copy(report.begin() + 1, report.end(), request.begin());
@@ -226,13 +226,15 @@ void SimMcp2221::run(bool stop) {
 void SimMcp2221::read(const Report& request, Report& answer) {
   const bool repeated = byte_at(request, 0) == kReadRepeatedStart;
   const std::size_t length = byte_at(request, 1) | static_cast<std::size_t>(byte_at(request, 2)) << 8U;
+  if (pending_ > 0) --pending_;  // it has had its time meanwhile, as if it had been asked
   if (pending_ > 0 || engine_ != (repeated ? kNoStopDone : kIdle)) {
     answer[1] = std::byte{kBusyOrUnknown};
     answer[2] = std::byte{engine_};
     return;
   }
-  if (length == 0 || (byte_at(request, 3) & 1U) == 0) {
-    violation("a read of nothing, or from an address with the write bit");
+  // The command itself says which way; Linux's driver leaves the bit for reading away.
+  if (length == 0) {
+    violation("a read of nothing");
     answer[1] = std::byte{kBusyOrUnknown};
     return;
   }

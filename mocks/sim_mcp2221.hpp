@@ -15,8 +15,9 @@ namespace forager::mocks {
 // An MCP2221A (Microchip DS20005565). Declared: status with cancel and speed, the four pins by SRAM settings
 // and GPIO commands, I2C write, write without stop, read, read with repeated start, and fetching data. Other
 // commands are answered with "not supported", as the data sheet says, and kept in violations(); so is what a
-// real chip does not define: reserved bits, a transfer on top of one, lengths of nothing. Its I2C bus is any
-// hal::I2c, such as a SimI2cBus with chips on it.
+// real chip does not define: reserved bits, a transfer on top of one, lengths of nothing. A report that is
+// shorter than 64 bytes ends in zeros: Linux's driver sends such. Its I2C bus is any hal::I2c, such as a
+// SimI2cBus with chips on it.
 class SimMcp2221 final : public SimHidDevice {
  public:
   explicit SimMcp2221(hal::I2c& bus, std::string serial = "SN0001", std::string path = "/dev/hidraw0");

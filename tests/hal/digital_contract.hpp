@@ -22,6 +22,7 @@ class DigitalRig {
   virtual EdgeIn& in() = 0;
   virtual void drive_in(bool active, Instant at) = 0;
   virtual void unplug(bool out) = 0;
+  virtual bool keeps_last_edges() { return false; }  // of too many; else the first ones
 };
 
 struct DigitalRigMaker {
@@ -69,11 +70,11 @@ TEST_P(DigitalContract, EdgesComeInOrderWithTheirTimes) {
   EXPECT_EQ(0U, rig_->in().edges(edges).value());
 }
 
-TEST_P(DigitalContract, TheQueueOfEdgesIsFiniteAndKeepsTheOldest) {
+TEST_P(DigitalContract, TheQueueOfEdgesIsFiniteAndKeepsOneEndOfThem) {
   for (int i = 0; i < 40; ++i) rig_->drive_in(i % 2 == 0, Instant(i * 1ms));
   std::array<Edge, 64> edges{};
   ASSERT_EQ(16U, rig_->in().edges(edges).value());
-  EXPECT_EQ(Instant(0ms), edges[0].at);
+  EXPECT_EQ(rig_->keeps_last_edges() ? Instant(24ms) : Instant(0ms), edges[0].at);
 }
 
 TEST_P(DigitalContract, UnpluggedItSaysSo) {

@@ -3,8 +3,9 @@
 # starts udev with the project's rules, runs the tests and stops the machine. Beside it in its folder: program, *.ko,
 # rules; FILTER comes from the kernel's command line. The root is the host's, read-only: whatever is written is in
 # memory.
-export PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/run TMPDIR=/run FORAGER_KERNEL_GUEST=1
+export PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/run TMPDIR=/run
 here=$(dirname "$0")
+export FORAGER_KERNEL_GUEST=$here # whose modules tests may load
 
 mount -t proc proc /proc
 mount -t sysfs sysfs /sys
@@ -23,6 +24,8 @@ done | cat /etc/group - >/run/group
 mount --bind /run/group /etc/group
 mkdir -p /run/udev/rules.d
 cp "$here"/*.rules /run/udev/rules.d/
+# Their example of a reader that plays a keyboard, as the owner of such a reader fills it in.
+sed -n '/FFFF:FFFF/s/^#//; s/FFFF:FFFF/1209:0004/p' "$here"/*.rules >/run/udev/rules.d/99-keyboard.rules
 /lib/systemd/systemd-udevd --daemon 2>/dev/null
 
 insmod "$here/i2c-stub.ko" chip_addr=0x20
@@ -32,4 +35,5 @@ udevadm settle --timeout=20
 
 "$here/program" --gtest_color=no --gtest_filter="$FILTER"
 echo "JOB-RC $?"
-halt -f -d
+# reboot(RB_POWER_OFF): a system without an init has no command for it, but Debian is never without this.
+perl -e 'syscall(169, 0xfee1dead, 672274793, 0x4321fedc, 0)'

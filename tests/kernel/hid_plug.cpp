@@ -11,8 +11,8 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <span>
 #include <string>
+#include <vector>
 
 namespace forager::kernel {
 namespace {
@@ -86,8 +86,10 @@ void HidPlug::take_event() {
   uhid_event event{};
   if (::read(uhid_, &event, sizeof event) <= 0) return;
   uhid_event reply{};
-  if (event.type == UHID_OUTPUT) {
-    static_cast<void>(device_.output(bytes_of(event.u.output.data, event.u.output.size)));
+  if (event.type == UHID_START) {
+    numbered_ = (event.u.start.dev_flags & UHID_DEV_NUMBERED_OUTPUT_REPORTS) != 0;
+  } else if (event.type == UHID_OUTPUT) {
+    take_output(bytes_of(event.u.output.data, event.u.output.size));
   } else if (event.type == UHID_SET_REPORT) {
     const auto bytes = bytes_of(event.u.set_report.data, event.u.set_report.size);
     const bool taken =
@@ -106,6 +108,13 @@ void HidPlug::take_event() {
     answer.size = static_cast<__u16>(count.value_or(0));
     send(uhid_, reply);
   }
+}
+
+// Programs begin an unnumbered report with a zero, drivers of the kernel do not; the wire has none (usbhid).
+void HidPlug::take_output(std::span<const std::byte> report) {
+  std::vector<std::byte> whole(report.begin(), report.end());
+  if (!numbered_ && !whole.empty() && whole[0] != std::byte{0}) whole.insert(whole.begin(), std::byte{0});
+  static_cast<void>(device_.output(whole));
 }
 
 void HidPlug::send_inputs() {

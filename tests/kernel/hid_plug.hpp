@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <span>
 #include <thread>
 
 #include "mocks/sim_hid_device.hpp"
@@ -24,10 +25,12 @@ class HidPlug {
   void create();
   void serve();
   void take_event();
+  void take_output(std::span<const std::byte> report);
   void send_inputs();
 
   mocks::SimHidDevice& device_;
   int uhid_ = -1;
+  bool numbered_ = false;  // output reports of the device
   std::mutex mutex_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;

@@ -23,12 +23,12 @@ bool become_nobody(const std::vector<std::string>& groups) {
 
 }  // namespace
 
-std::string as_nobody(const std::vector<std::string>& groups, const std::function<std::string()>& body) {
+std::string in_a_child(const std::function<std::string()>& body) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) return "no pipe";
   const pid_t child = ::fork();
   if (child == 0) {
-    const std::string text = become_nobody(groups) ? body() : "cannot become nobody";
+    const std::string text = body();
     const auto written = ::write(ends[1], text.data(), text.size());
     ::_exit(written == static_cast<ssize_t>(text.size()) ? 0 : 1);
   }
@@ -41,6 +41,10 @@ std::string as_nobody(const std::vector<std::string>& groups, const std::functio
   int status = 0;
   ::waitpid(child, &status, 0);
   return status == 0 ? answer : "the child died; before, it said: " + answer;
+}
+
+std::string as_nobody(const std::vector<std::string>& groups, const std::function<std::string()>& body) {
+  return in_a_child([&] { return become_nobody(groups) ? body() : "cannot become nobody"; });
 }
 
 }  // namespace forager::kernel

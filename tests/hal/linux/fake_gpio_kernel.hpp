@@ -44,7 +44,7 @@ class FakeGpio {
     static FakeGpio gpio;
     return gpio;
   }
-  std::map<int, Chip> chips;  // by number: /dev/gpiochipN
+  std::map<int, Chip> chips;                                     // by number: /dev/gpiochipN
   static inline void (*driven)(const GpioLine& line) = nullptr;  // called for every level an output is given
 
   void reset() { chips.clear(); }
@@ -69,7 +69,10 @@ class FakeGpio {
     const std::size_t size = line.v2_events ? sizeof v2 : sizeof v1;
     int waiting = 0;
     ::ioctl(line.event_pipe, FIONREAD, &waiting);
-    if (static_cast<std::size_t>(waiting) >= 16 * size) return;  // the kernel's queue is full
+    if (static_cast<std::size_t>(waiting) >= 16 * size) {  // the kernel's queue is full
+      if (!line.v2_events) return;
+      drop_oldest(line.event_pipe);
+    }
     static_cast<void>(!::write(line.event_pipe, line.v2_events ? static_cast<void*>(&v2) : &v1, size));
   }
 
@@ -148,6 +151,13 @@ class FakeGpio {
     bool is_chip = false;
   };
 
+  static void drop_oldest(int event_pipe) {
+    const int reading =
+        ::open(("/proc/self/fd/" + std::to_string(event_pipe)).c_str(), O_RDONLY | O_NONBLOCK);
+    gpio_v2_line_event oldest{};
+    static_cast<void>(!::read(reading, &oldest, sizeof oldest));
+    ::close(reading);
+  }
   static std::uint64_t wall_minus_monotonic() {
     timespec wall{};
     timespec monotonic{};

@@ -191,6 +191,7 @@ class GpioRig final : public contract::DigitalRig {
   EdgeIn& in() override { return *in_; }
   void drive_in(bool active, Instant at) override { FakeGpio::get().drive(4, 1, !active, at); }
   void unplug(bool out) override { FakeGpio::get().chips[4].gone = out; }
+  bool keeps_last_edges() override { return gpio_library().find("libgpiod 2") == 0; }
 
  private:
   std::unique_ptr<DigitalOut> out_;
