@@ -9,6 +9,7 @@
 #include "mocks/sim_hid_echo.hpp"
 #include "mocks/sim_i2c_bus.hpp"
 #include "mocks/sim_mcp2221.hpp"
+#include "mocks/sim_pca9685.hpp"
 
 namespace forager::hal {
 namespace {
@@ -256,7 +257,28 @@ TEST(SimMcp2221, WhatIsNotDeclaredIsRefusedAndKept) {
     EXPECT_EQ(std::byte{1}, answer[1]) << command;
   }
   EXPECT_EQ(5U, chip.violations().size());
-  EXPECT_FALSE(chip.output(std::span(report).first(64))) << "a report has 64 bytes and its number";
+  EXPECT_FALSE(chip.output(std::span(report).first(1))) << "no command";
+  EXPECT_FALSE(chip.output(std::array<std::byte, 66>{})) << "a report has 64 bytes and its number";
+}
+
+// As Linux's own driver asks: short reports, addresses without the bit for reading, and no question between.
+TEST(SimMcp2221, TakesWhatTheKernelsDriverSends) {
+  mocks::SimI2cBus wires("wires");
+  mocks::SimPca9685 servo_chip;
+  wires.attach(0x41, servo_chip);
+  mocks::SimMcp2221 chip(wires);
+  const auto ask = [&](auto... bytes) {
+    EXPECT_TRUE(chip.output(std::array{std::byte{0}, static_cast<std::byte>(bytes)...}));
+    std::array<std::byte, 64> answer{};
+    EXPECT_EQ(answer.size(), chip.input(answer));
+    return answer;
+  };
+  EXPECT_EQ(std::byte{0}, ask(mcp2221::kWriteNoStop, 1, 0, 0x41 << 1, 0x00)[1]);
+  EXPECT_EQ(std::byte{0}, ask(mcp2221::kReadRepeatedStart, 1, 0, 0x41 << 1)[1]);
+  const auto mode = ask(mcp2221::kReadData);
+  EXPECT_EQ(std::byte{1}, mode[3]) << "bytes";
+  EXPECT_EQ(static_cast<std::byte>(servo_chip.reg(0)), mode[4]);
+  EXPECT_TRUE(chip.violations().empty());
 }
 
 }  // namespace
