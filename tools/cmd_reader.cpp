@@ -195,6 +195,9 @@ void add_watch(CLI::App& reader, int& exit_code) {
       ->transform(TimeSpan(0.05, 3600.0));
   sub->add_option("--least", command->least_tags, "Exit code 4 if fewer different tags were heard")
       ->check(WholeNumber());
+  auto* listen =
+      sub->add_flag("--listen", command->listen,
+                    "Only listen to what it sends: it runs for somebody else, and goes on as it is");
   sub->add_option("--session", command->session, "Gen2 session: S0, S1, S2, S3");
   sub->add_option("--target", command->target, "Which inventoried flag answers: A, B, AB, BA");
   sub->add_option("--power", command->power_dbm, "Transmit power of every antenna, dBm")
@@ -204,6 +207,8 @@ void add_watch(CLI::App& reader, int& exit_code) {
   sub->add_option("--ports", command->ports, "Antenna ports, such as 1,2,4")
       ->delimiter(',')
       ->check(WholeNumber(32));
+  for (const char* option : {"--session", "--target", "--power", "--sensitivity", "--ports"})
+    listen->excludes(sub->get_option(option));
   sub->add_option("--seed", command->seed, "Of an emulated reader, its air and its tags")
       ->capture_default_str()
       ->check(WholeNumber());

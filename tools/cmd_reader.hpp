@@ -23,7 +23,8 @@ struct ReaderCommand {
   std::uint64_t seed = 1;
 
   // watch
-  double for_s = 0.0;  // 0: until told to stop
+  bool listen = false;  // to a reader that runs for somebody else
+  double for_s = 0.0;   // 0: until told to stop
   double every_s = 1.0;
   std::uint64_t least_tags = 0;
   bool real_time = false;

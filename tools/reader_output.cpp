@@ -49,8 +49,8 @@ Json json_of(const ReaderMoment& moment, bool whole) {
     ports.push_back(json_of(port, whole ? port.total : port.interval, seconds, moment.now));
   Json out{{"event", whole ? "end" : "reads"},
            {"t_s", hal::to_seconds(moment.now)},
-           {"link", to_string(moment.driver.link().phase)},
-           {"rounds", whole ? moment.driver.counters().inventories : moment.inventories},
+           {"link", to_string(moment.link.phase)},
+           {"rounds", whole ? moment.counters.inventories : moment.inventories},
            {"reads_s", rounded(static_cast<double>(count.reads) / seconds)},
            {"tags_s", rounded(static_cast<double>(count.tags) / seconds)}};
   if (!whole) out["new_tags"] = tally.new_tags();
@@ -60,8 +60,8 @@ Json json_of(const ReaderMoment& moment, bool whole) {
   out["age_s"] = or_null(age_s(tally.last_heard(), moment.now));
   out["why_none"] = moment.why.empty() ? Json(nullptr) : Json(moment.why);
   if (whole) {
-    const auto& counters = moment.driver.counters();
-    out["link_losses"] = moment.driver.link().losses;
+    const auto& counters = moment.counters;
+    out["link_losses"] = moment.link.losses;
     out["dropped"] = {
         {"stale", counters.stale}, {"bad_items", counters.bad_items}, {"malformed", counters.malformed}};
   }
@@ -91,7 +91,7 @@ std::vector<std::string> table_of(const ReaderMoment& moment, bool whole) {
 }
 
 std::string headline(const ReaderMoment& moment) {
-  const auto& link = moment.driver.link();
+  const auto& link = moment.link;
   return fmt::format("{:.1f} s  link {} for {:.1f} s, {} rounds", hal::to_seconds(moment.now),
                      to_string(link.phase), hal::to_seconds(moment.now - link.since), moment.inventories);
 }
@@ -101,7 +101,7 @@ std::string line_of(const ReaderMoment& moment) {
   const double seconds = hal::to_seconds(moment.interval);
   std::string line = fmt::format(
       "{:9.1f} s  link {:<7}  rounds {:>3}  reads/s {:>6.1f}  tags/s {:>6.1f}  new {:>4}  tags {:>5} ",
-      hal::to_seconds(moment.now), to_string(moment.driver.link().phase), moment.inventories,
+      hal::to_seconds(moment.now), to_string(moment.link.phase), moment.inventories,
       static_cast<double>(tally.interval().reads) / seconds,
       static_cast<double>(tally.interval().tags) / seconds, tally.new_tags(), tally.total().tags);
   for (const auto& port : tally.ports())
@@ -133,8 +133,7 @@ void ReaderOutput::moment(const ReaderMoment& moment) {
 
 void ReaderOutput::end(const ReaderMoment& moment) {
   if (out_.json()) return out_.record(json_of(moment, true));
-  out_.line(fmt::format("in {:.1f} s, {} rounds:", hal::to_seconds(moment.now),
-                        moment.driver.counters().inventories));
+  out_.line(fmt::format("in {:.1f} s, {} rounds:", hal::to_seconds(moment.now), moment.counters.inventories));
   for (const std::string& line : table_of(moment, true)) out_.line(line);
   if (moment.tally.total().reads == 0) out_.line("none: " + moment.why);
 }

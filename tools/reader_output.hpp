@@ -14,7 +14,8 @@ namespace forager::tools {
 struct ReaderMoment {
   hal::Instant now;
   hal::Duration interval{};
-  const reader::AdvanNetReader& driver;
+  const reader::LinkStatus& link;
+  const reader::AdvanNetCounters& counters;
   const reader::ReadTally& tally;
   std::uint64_t inventories = 0;  // in the interval
   std::string why;                // no tag was heard in it; empty: some were

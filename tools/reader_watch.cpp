@@ -24,15 +24,6 @@ using namespace std::chrono_literals;
 constexpr hal::Duration kTick = 5ms;
 constexpr hal::Duration kToStop = 5s;  // on top of a request under way
 
-reader::AdvanNetConfig driver_config(const ReaderCommand& command, const boards::Board& board,
-                                     const boards::Scene& scene) {
-  reader::AdvanNetConfig config = boards::advannet_config(scene, board);
-  config.request_timeout = hal::from_seconds(command.timeout_s);
-  config.status_period = 2s;  // somebody at a bench wants to see at once that the reader was stopped
-  config.backoff_cap = 4s;
-  return config;
-}
-
 // The outermost loop of the bench.
 class ReaderWatch {
  public:
@@ -70,8 +61,13 @@ class ReaderWatch {
   }
   [[nodiscard]] ReaderMoment moment(bool whole) const {
     const auto& counters = reader_.counters();
-    ReaderMoment moment{clock_.now(), clock_.now() - last_moment_,         reader_,
-                        tally_,       counters.inventories - inventories_, {}};
+    ReaderMoment moment{clock_.now(),
+                        clock_.now() - last_moment_,
+                        reader_.link(),
+                        counters,
+                        tally_,
+                        counters.inventories - inventories_,
+                        {}};
     if ((whole ? tally_.total() : tally_.interval()).reads == 0)
       moment.why = reader::why_silent({.link = reader_.link(),
                                        .plan = plan_,
@@ -168,7 +164,17 @@ hal::Result<reader::ReadPlan> plan_of(const boards::Scene& scene, const ReaderCo
   return plan;
 }
 
+reader::AdvanNetConfig driver_config(const ReaderCommand& command, const boards::Board& board,
+                                     const boards::Scene& scene) {
+  reader::AdvanNetConfig config = boards::advannet_config(scene, board);
+  config.request_timeout = hal::from_seconds(command.timeout_s);
+  config.status_period = 2s;  // somebody at a bench wants to see at once that the reader was stopped
+  config.backoff_cap = 4s;
+  return config;
+}
+
 int watch_reader(const ReaderCommand& command, const boards::Board& board, const boards::Scene& scene) {
+  if (command.listen) return listen_to_reader(command, board, scene);
   const auto plan = plan_of(scene, command);
   if (!plan) return complain(plan.error());
   const bool emulated = board.kind == boards::BoardKind::sim;

@@ -151,6 +151,40 @@ TEST_F(CmdReaderOverSockets, AReaderSomebodyElseStopsIsNoticed) {
   EXPECT_TRUE(program.wait_for_out("the reader reports STOPPED", kPatience)) << program.so_far().out;
 }
 
+// One program has the reader at work; a second one listens, and the first notices nothing of it.
+TEST_F(CmdReaderOverSockets, ListeningLeavesAReaderThatRunsForSomebodyElseAlone) {
+  rig_.start_reader();
+  Program first(with_board({"reader", "watch", "--json"}));
+  ASSERT_TRUE(first.wait_for_out("\"link\":\"open\"", kPatience)) << first.so_far().err;
+  Program listener(with_board({"reader", "watch", "--listen", "--json"}));
+  EXPECT_TRUE(listener.wait_until(
+      [](const ProgramResult& it) {
+        const Json moment = last_event(it.out, "reads");
+        return !moment.is_null() && moment["reads"] > 0;
+      },
+      kPatience))
+      << listener.so_far().out << listener.so_far().err;
+  listener.send_signal(SIGINT);
+  const ProgramResult heard = listener.finish();
+  EXPECT_EQ(heard.exit_code, 0) << heard.err;
+  EXPECT_THAT(run_program(with_board({"reader", "info"})).out, HasSubstr("RUNNING"));
+  EXPECT_TRUE(first.running());
+  first.send_signal(SIGINT);
+  const ProgramResult result = first.finish();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(last_event(result.out, "end")["link_losses"], 0);
+}
+
+TEST_F(CmdReaderOverSockets, AStoppedReaderIsListenedToAndNotStarted) {
+  rig_.start_reader();
+  const ProgramResult result =
+      run_program(with_board({"reader", "watch", "--listen", "--for", "2s", "--json"}));
+  EXPECT_EQ(last_event(result.out, "end")["reads"], 0);
+  EXPECT_THAT(run_program(with_board({"reader", "info"})).out, HasSubstr("STOPPED"));
+  expect_refusals({{with_board({"reader", "watch", "--listen", "--power", "20"}), 2, "--listen"},
+                   {{"reader", "watch", "--listen"}, 2, "--host"}});
+}
+
 TEST_F(CmdReaderOverSockets, AReaderThatIsNotThereIsNamedWithTheMend) {
   const ProgramResult info = run_program(with_board({"reader", "info"}));
   EXPECT_EQ(info.exit_code, 1);

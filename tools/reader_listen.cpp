@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "boards/reader_bench.hpp"
+#include "boards/run_clock.hpp"
+#include "boards/run_journal.hpp"
+#include "reader/advannet_listener.hpp"
+#include "tools/bench_session.hpp"
+#include "tools/cli_style.hpp"
+#include "tools/reader_output.hpp"
+#include "tools/reader_watch.hpp"
+
+namespace forager::tools {
+namespace {
+
+constexpr hal::Duration kTick = std::chrono::milliseconds(5);
+
+std::string why_silent(const reader::LinkStatus& link) {
+  if (link.phase != reader::LinkPhase::open)
+    return fmt::format("the link is {}{}{}", to_string(link.phase), link.reason.empty() ? "" : ": ",
+                       link.reason);
+  if (!link.speaks) return "the event stream is open, and not even keep-alives have come";
+  return "it sends keep-alives and no reads: stopped, or no tag in reach; ask it how it is: forager reader "
+         "info";
+}
+
+// The outermost loop. Ports have no names: those are of a plan, which only who runs the reader has.
+class ReaderListen {
+ public:
+  ReaderListen(const ReaderCommand& command, reader::AdvanNetListener& reader, hal::Clock& clock,
+               ReaderOutput& output)
+      : command_(command), reader_(reader), clock_(clock), output_(output), tally_({}) {}
+
+  int run() {
+    BenchLoop loop(clock_, kTick);
+    last_moment_ = clock_.now();
+    reader_.start(last_moment_);
+    const auto time = command_.for_s > 0.0 ? std::optional(hal::from_seconds(command_.for_s)) : std::nullopt;
+    loop.run(time, [this](hal::Instant now) {
+      reader_.update(now);
+      tally_.add(reader_.reads());
+      if (now - last_moment_ >= hal::from_seconds(command_.every_s)) show();
+      return reader_.link().phase != reader::LinkPhase::failed;
+    });
+    const ReaderMoment last = moment(true);
+    output_.end(last);
+    if (!reader_.link().reading() && tally_.total().reads == 0) {
+      fmt::print(stderr, "forager: {}\n", one_line(last.why));
+      return kExitFailure;
+    }
+    if (tally_.total().tags >= command_.least_tags) return kExitDone;
+    fmt::print(stderr, "forager: {} different tags were heard, fewer than the {} of --least\n",
+               tally_.total().tags, command_.least_tags);
+    return kExitCheckFailed;
+  }
+
+ private:
+  [[nodiscard]] ReaderMoment moment(bool whole) const {
+    const reader::AdvanNetCounters& counters = reader_.counters();
+    ReaderMoment moment{clock_.now(),
+                        clock_.now() - last_moment_,
+                        reader_.link(),
+                        counters,
+                        tally_,
+                        counters.inventories - inventories_,
+                        {}};
+    if ((whole ? tally_.total() : tally_.interval()).reads == 0) moment.why = why_silent(reader_.link());
+    return moment;
+  }
+  void show() {
+    output_.moment(moment(false));
+    inventories_ = reader_.counters().inventories;
+    tally_.next_interval();
+    last_moment_ = clock_.now();
+  }
+
+  const ReaderCommand& command_;
+  reader::AdvanNetListener& reader_;
+  hal::Clock& clock_;
+  ReaderOutput& output_;
+  reader::ReadTally tally_;
+  hal::Instant last_moment_;
+  std::uint64_t inventories_ = 0;
+};
+
+}  // namespace
+
+int listen_to_reader(const ReaderCommand& command, const boards::Board& board, const boards::Scene& scene) {
+  if (board.kind == boards::BoardKind::sim)
+    return complain_usage("a reader emulated in this program runs for nobody else: give --board or --host");
+  const auto clock = boards::make_real_clock(1.0);
+  ReaderOutput output(command.json);
+  const auto journal =
+      boards::RunJournal::open({}, [&output](hal::Instant now, std::string_view source,
+                                             std::string_view text) { output.note(now, source, text); });
+  if (!journal) return complain(journal.error());
+  const auto bench = boards::open_reader_bench(board, scene, command.seed);
+  if (!bench) return complain(bench.error());
+  reader::AdvanNetListener reader((*bench)->events(), **journal, driver_config(command, board, scene));
+  return ReaderListen(command, reader, *clock, output).run();
+}
+
+}  // namespace forager::tools
