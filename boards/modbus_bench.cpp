@@ -20,4 +20,20 @@ hal::Result<std::unique_ptr<hal::Modbus>> open_modbus_bench(const ModbusPlace& p
       {.device = place.bus, .baud = place.baud, .parity = place.parity, .timeout = place.timeout});
 }
 
+hal::Result<ModbusUnit> find_modbus(const std::vector<ModbusLine>& lines, const std::string& text) {
+  std::string there;
+  std::vector<ModbusUnit> found;
+  for (const ModbusLine& line : lines)
+    for (const ModbusDevice& device : line.devices) {
+      const std::string full = line.name + "." + device.name;
+      there += (there.empty() ? "" : ", ") + full;
+      if (text == device.name || text == full) found.push_back({&line, &device});
+    }
+  if (found.size() == 1) return found.front();
+  return hal::fail(
+      hal::ErrorCode::invalid_argument, "modbus device '" + text + "'", "find",
+      found.empty() ? "the board file names no such device" : "several lines have one of this name",
+      there.empty() ? "Declare it: [[modbus]] and [[modbus.device]]" : "There are " + there);
+}
+
 }  // namespace forager::boards

@@ -14,6 +14,7 @@
 #include "tools/bench_session.hpp"
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
+#include "tools/modbus_names.hpp"
 
 namespace forager::tools {
 namespace {
@@ -177,6 +178,7 @@ void add_arm(CLI::App* sub, const Command& command) {
 void add_modbus_command(CLI::App& app, int& exit_code) {
   CLI::App* modbus = app.add_subcommand("modbus", "Read and write registers of Modbus devices, find devices");
   modbus->require_subcommand(1);
+  add_modbus_names(*modbus, exit_code);
   Command command;
   CLI::App* sub = add_task(*modbus, "read", "Read registers", ModbusTask::read, command, exit_code);
   add_address(sub, command);

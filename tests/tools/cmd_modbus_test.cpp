@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/scratch_folder.hpp"
+#include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
 
@@ -64,6 +66,74 @@ TEST(CmdModbus, ReadsWritesAndFindsAnEmulatedDevice) {
   }
 }
 
+class CmdModbusByName : public testing::Test {
+ protected:
+  std::vector<std::string> with_board(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "modbus");
+    for (const std::string& more : {std::string("--board"), board_}) arguments.push_back(more);
+    return arguments;
+  }
+  test::ScratchFolder folder_;
+  std::string board_ = folder_.write("robot.toml", R"([board]
+name = "robot"
+[[modbus]]
+name = "power"
+bus = "sim"
+[[modbus.device]]
+name = "battery"
+kind = "battery"
+unit = 4
+register = [
+  { name = "voltage", address = 0, table = "input", scale = 0.01, unit = "V" },
+  { name = "charge", address = 10, table = "input", type = "f32", scale = 0.01 },
+  { name = "capacity", address = 20, type = "u32", word_order = "low_first", scale = 0.001, unit = "Ah" },
+]
+[[modbus.device]]
+name = "actuator"
+unit = 3
+register = [ { name = "target", address = 40, scale = 0.1, offset = -10, unit = "mm" } ]
+)");
+};
+
+TEST_F(CmdModbusByName, RegistersAreListedShownAndSetInTheUnitsOfTheirManual) {
+  const std::vector<Case> cases{
+      {{"list"},
+       0,
+       "battery: unit 4 on power (sim)\n"
+       "  voltage          input 0 u16 x 0.01, V\n"
+       "  charge           input 10 f32 x 0.01\n"
+       "  capacity         holding 20 u32 low word first x 0.001, Ah\n"
+       "actuator: unit 3 on power (sim)\n"
+       "  target           holding 40 u16 x 0.1 + -10, mm\n",
+       ""},
+      {{"show", "battery", "capacity", "charge"}, 0, "capacity         10 Ah\ncharge           0.8\n", ""},
+      {{"set", "power.actuator", "target", "12.34", "--arm"},
+       0,
+       "actuator: target is 12.3 mm; it stays until somebody writes again\n",
+       ""},
+  };
+  for (const Case& it : cases) {
+    SCOPED_TRACE(testing::PrintToString(it.arguments));
+    const ProgramResult result = run_program(with_board(it.arguments));
+    EXPECT_EQ(result.exit_code, it.exit_code);
+    EXPECT_EQ(result.out, it.out);
+    EXPECT_EQ(result.err, it.err);
+  }
+  const ProgramResult json = run_program(with_board({"show", "battery", "--json"}));
+  EXPECT_EQ(lines_of(json.out).size(), 3U) << json.out;
+  EXPECT_EQ(last_event(json.out, "value")["measured_in"], "Ah");
+}
+
+TEST_F(CmdModbusByName, WhatIsNotDeclaredCannotBeAskedFor) {
+  expect_refusals({
+      {with_board({"show", "batery"}), 2, "There are power.battery, power.actuator"},
+      {with_board({"show", "battery", "current"}), 2, "It has voltage, charge, capacity"},
+      {with_board({"set", "actuator", "target", "1"}), 2, "--arm"},
+      {with_board({"set", "actuator", "target", "7000", "--arm"}), 2, "does not fit"},
+      {with_board({"set", "battery", "voltage", "12", "--arm"}), 2, "can only be read"},
+  });
+}
+
 TEST(CmdModbus, JsonHasTheSame) {
   const Json read =
       last_event(run_program({"modbus", "read", "sim", "1", "--count", "3", "--json"}).out, "registers");
@@ -95,7 +165,7 @@ TEST(CmdModbus, MistakesAreFoundBeforeTheLineIsTouched) {
     const char* says;
   };
   const std::vector<Wrong> cases{
-      {{"modbus"}, "read, write, coil, scan"},
+      {{"modbus"}, "list, show, set, read, write, coil, scan"},
       {{"modbus", "read", "sim"}, "address"},
       {{"modbus", "read", "sim", "65536"}, "65536"},
       {{"modbus", "read", "sim", "0", "--count", "126"}, "126"},
