@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hal/linux/pseudo_terminal.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
@@ -61,6 +62,22 @@ TEST_F(CmdSerialTest, WatchPrintsWhatComes) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, "hello\n");
   EXPECT_THAT(result.err, HasSubstr("6 bytes received, 0 sent"));
+}
+
+TEST_F(CmdSerialTest, ANameOfTheBoardFileBringsPortBaudRateAndParity) {
+  const test::ScratchFolder folder;
+  const std::string board = folder.write(
+      "robot.toml", "[board]\nname = \"robot\"\n[[serial]]\nname = \"scale\"\nbaud = 4800\nport = \"" +
+                        port() +
+                        "\"\n[[serial]]\nname = \"meter\"\nport = \"/dev/ttyUSB77\"\nparity = \"even\"\n");
+  Program program({"serial", "watch", "scale", "--board", board});
+  ASSERT_TRUE(program.wait_for_err("4800 8N1", 20s)) << program.so_far().err;
+  send("12.5 kg\n");
+  EXPECT_TRUE(program.wait_for_out("12.5 kg\n", 20s)) << program.so_far().err;
+  EXPECT_THAT(run_program({"serial", "list", "--board", board}).out,
+              HasSubstr("scale is " + port() + " at 4800 8N1\nmeter is /dev/ttyUSB77 at 115200 8E1\n"));
+  expect_refusal({"serial", "watch", "scales", "--board", board}, 2, HasSubstr("names scale, meter"));
+  expect_refusal({"serial", "watch", "scale"}, 2, HasSubstr("neither a name"));
 }
 
 TEST_F(CmdSerialTest, WatchInHexTellsBytesApart) {

@@ -24,6 +24,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::StartsWith;
+using testing::UnorderedElementsAreArray;
 
 std::vector<std::string> lines_in(const std::string& text) {
   std::vector<std::string> lines;
@@ -63,6 +64,13 @@ std::string with_minus_signs(std::string text) {
   return text;
 }
 
+// What the program tells bash that fits after these words.
+std::vector<std::string> completions_of(std::vector<std::string> words, const std::string& begun) {
+  words.insert(words.begin(), "__complete");
+  words.push_back(begun);
+  return lines_in(run_program(words).out);
+}
+
 // Looks at a command and all below it; gives how many there were.
 int check_command(const std::vector<std::string>& words, const std::string& page) {
   std::vector<std::string> arguments = words;
@@ -70,6 +78,11 @@ int check_command(const std::vector<std::string>& words, const std::string& page
   const std::string help = run_program(arguments).out;
   const auto commands = commands_in(help);
   int count = 1;
+  if (commands.empty()) {
+    EXPECT_THAT(completions_of(words, "--"), UnorderedElementsAreArray(options_in(help)));
+  } else {
+    EXPECT_THAT(completions_of(words, ""), UnorderedElementsAreArray(commands));
+  }
   for (const std::string& command : commands) {
     std::vector<std::string> inner = words;
     inner.push_back(command);
@@ -89,7 +102,7 @@ int check_command(const std::vector<std::string>& words, const std::string& page
   return count;
 }
 
-TEST(ManualPage, HasEveryCommandWithAllOfItsOptions) {
+TEST(ManualPage, HasEveryCommandWithAllOfItsOptionsAndSoDoesTheCompletion) {
   const ProgramResult page = run_program({"manual"});
   EXPECT_EQ(page.exit_code, 0) << page.err;
   EXPECT_THAT(page.out, StartsWith(".TH FORAGER 1"));
