@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "hal/success.hpp"
+
 namespace forager::hal {
 namespace {
 
@@ -51,7 +53,7 @@ Result<> Modbus::check(std::uint8_t unit, std::uint16_t address, std::size_t cou
   if (count == 0 || count > most || address + count > 65536)
     return fail(ErrorCode::invalid_argument, std::string(name()), std::string(operation),
                 fmt::format("{} registers from {} on: from 1 to {} fit into a frame", count, address, most));
-  return {};
+  return success();
 }
 
 Result<> Modbus::read_holding(std::uint8_t unit, std::uint16_t address, std::span<std::uint16_t> into) {

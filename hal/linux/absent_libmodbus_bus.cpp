@@ -16,5 +16,6 @@ Result<std::unique_ptr<Modbus>> open_modbus_rtu(const ModbusRtuConfig& config) {
 Result<std::unique_ptr<Modbus>> open_modbus_tcp(const ModbusTcpConfig& config) {
   return absent("modbus " + config.host);
 }
+std::string modbus_library() { return "built without libmodbus"; }
 
 }  // namespace forager::hal

@@ -13,6 +13,7 @@
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/gpio_error.hpp"
 #include "hal/linux/gpio_request.hpp"
+#include "hal/success.hpp"
 
 namespace forager::hal {
 namespace {
@@ -116,7 +117,7 @@ class Out final : public DigitalOut {
  private:
   Result<> do_set(bool active) override {
     if (gpiod_line_set_value(line_, active ? 1 : 0) != 0) return gpio_failure(request_.name, "set", errno);
-    return {};
+    return success();
   }
   std::string_view do_name() const override { return request_.name; }
 
@@ -141,7 +142,7 @@ class Group final : public DigitalOutGroup {
     std::copy(active.begin(), active.end(), values.begin());
     if (gpiod_line_set_value_bulk(&request_.lines, values.data()) != 0)
       return gpio_failure(request_.name, "set", errno);
-    return {};
+    return success();
   }
   [[nodiscard]] std::size_t do_size() const override { return request_.lines.num_lines; }
   [[nodiscard]] std::string_view do_name() const override { return request_.name; }

@@ -10,6 +10,7 @@
 #include "hal/linux/gpio.hpp"
 #include "hal/linux/gpio_error.hpp"
 #include "hal/linux/gpio_request.hpp"
+#include "hal/success.hpp"
 
 namespace forager::hal {
 namespace {
@@ -137,14 +138,19 @@ class Out final : public DigitalOut, public DigitalOutGroup {
   Out& operator=(const Out&) = delete;
 
  private:
-  Result<> do_set(bool active) override { return do_set(std::span(&active, 1)); }
+  Result<> do_set(bool active) override {
+    const auto value = active ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
+    if (gpiod_line_request_set_value(request_.lines.get(), request_.offsets[0], value) != 0)
+      return gpio_failure(request_.name, "set", errno);
+    return success();
+  }
   Result<> do_set(std::span<const bool> active) override {
     std::array<gpiod_line_value, kMostGpioLines> values{};
     std::transform(active.begin(), active.end(), values.begin(),
                    [](bool on) { return on ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE; });
     if (gpiod_line_request_set_values(request_.lines.get(), values.data()) != 0)
       return gpio_failure(request_.name, "set", errno);
-    return {};
+    return success();
   }
   [[nodiscard]] std::size_t do_size() const override { return request_.offsets.size(); }
   [[nodiscard]] std::string_view do_name() const override { return request_.name; }

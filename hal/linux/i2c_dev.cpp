@@ -10,6 +10,8 @@
 #include <bit>
 #include <cerrno>
 
+#include "hal/success.hpp"
+
 namespace forager::hal {
 namespace {
 
@@ -90,7 +92,7 @@ Result<> I2cDev::do_transfer(std::uint8_t address, std::span<const std::byte> by
   if (answer != static_cast<int>(count))
     return fail(ErrorCode::io, name_, fmt::format("transfer with 0x{:02x}", address),
                 fmt::format("{} of {} messages went through", answer, count));
-  return {};
+  return success();
 }
 
 }  // namespace

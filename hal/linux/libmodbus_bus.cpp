@@ -10,6 +10,7 @@
 
 #include "hal/linux/kernel.hpp"
 #include "hal/linux/modbus_bus.hpp"
+#include "hal/success.hpp"
 
 namespace forager::hal {
 namespace {
@@ -32,8 +33,9 @@ class LibmodbusBus final : public Modbus {
                    std::span<std::uint16_t> into) override {
     FORAGER_TRY(ready(unit));
     const auto read = table == Table::holding ? modbus_read_registers : modbus_read_input_registers;
-    return judge(read(context_.get(), address, static_cast<int>(into.size()), into.data()),
-                 fmt::format("read registers {} to {} of unit {}", address, address + into.size() - 1, unit));
+    return judge(read(context_.get(), address, static_cast<int>(into.size()), into.data()), [&] {
+      return fmt::format("read registers {} to {} of unit {}", address, address + into.size() - 1, unit);
+    });
   }
   Result<> do_write(std::uint8_t unit, std::uint16_t address,
                     std::span<const std::uint16_t> values) override {
@@ -42,20 +44,31 @@ class LibmodbusBus final : public Modbus {
         values.size() == 1
             ? modbus_write_register(context_.get(), address, values[0])
             : modbus_write_registers(context_.get(), address, static_cast<int>(values.size()), values.data());
-    return judge(answer, fmt::format("write registers {} to {} of unit {}", address,
-                                     address + values.size() - 1, unit));
+    return judge(answer, [&] {
+      return fmt::format("write registers {} to {} of unit {}", address, address + values.size() - 1, unit);
+    });
   }
   Result<> do_write_coil(std::uint8_t unit, std::uint16_t address, bool on) override {
     FORAGER_TRY(ready(unit));
     return judge(modbus_write_bit(context_.get(), address, on ? 1 : 0),
-                 fmt::format("write coil {} of unit {}", address, unit));
+                 [&] { return fmt::format("write coil {} of unit {}", address, unit); });
   }
   [[nodiscard]] std::string_view do_name() const override { return name_; }
 
   Result<> ready(std::uint8_t unit);
   void hear_late_answer();
   [[nodiscard]] Failure silence(std::string operation);
-  Result<> judge(int answer, std::string operation);
+  // What was done is put into words when it failed only: that takes as long as all the rest of a call here.
+  template <class Operation>
+  Result<> judge(int answer, const Operation& operation) {
+    if (answer < 0) {
+      const int error = errno;
+      return failed(error, operation());
+    }
+    if (late_unit_ == unit_) late_unit_.reset();
+    return success();
+  }
+  [[nodiscard]] Failure failed(int error, std::string operation);
 
   Context context_;
   std::string name_;
@@ -92,7 +105,7 @@ Result<> LibmodbusBus::ready(std::uint8_t unit) {
   unit_ = unit;
   modbus_set_slave(context_.get(), unit);
   if (connected_) hear_late_answer();
-  if (connected_) return {};
+  if (connected_) return success();
   if (modbus_connect(context_.get()) == 0) {
     connected_ = true;
     return {};
@@ -108,31 +121,26 @@ Result<> LibmodbusBus::ready(std::uint8_t unit) {
               error);
 }
 
-Result<> LibmodbusBus::judge(int answer, std::string operation) {
-  if (answer >= 0) {
-    if (late_unit_ == unit_) late_unit_.reset();
-    return {};
-  }
-  const int error = errno;
+Failure LibmodbusBus::failed(int error, std::string operation) {
   if (error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX)
     return modbus_exception(name_, operation, static_cast<std::uint8_t>(error - MODBUS_ENOBASE));
   modbus_flush(context_.get());  // what is left of a late or broken answer must not be taken for the next one
-  const auto failed = [&](ErrorCode code, std::string detail, std::string mend) {
+  const auto broken = [&](ErrorCode code, std::string detail, std::string mend) {
     return fail(code, name_, std::move(operation), std::move(detail), std::move(mend));
   };
   switch (error) {
     case ETIMEDOUT:
       return silence(std::move(operation));
     case EMBBADCRC:
-      return failed(ErrorCode::protocol, "the answer's CRC is wrong",
+      return broken(ErrorCode::protocol, "the answer's CRC is wrong",
                     "Check shielding, termination and parity");
     case EMBBADSLAVE:
-      return failed(ErrorCode::protocol, "another unit answered", "Two devices may have the same number");
+      return broken(ErrorCode::protocol, "another unit answered", "Two devices may have the same number");
     case EMBBADDATA:
     case EMBBADEXC:
     case EMBMDATA:
     case EMBUNKEXC:
-      return failed(ErrorCode::protocol, "the answer does not fit the question", "");
+      return broken(ErrorCode::protocol, "the answer does not fit the question", "");
     default:
       break;
   }
@@ -164,5 +172,7 @@ Result<std::unique_ptr<Modbus>> open_modbus_tcp(const ModbusTcpConfig& config) {
   return make(modbus_new_tcp(config.host.c_str(), config.port),
               fmt::format("modbus {}:{}", config.host, config.port), config.timeout);
 }
+
+std::string modbus_library() { return "libmodbus " LIBMODBUS_VERSION_STRING; }
 
 }  // namespace forager::hal

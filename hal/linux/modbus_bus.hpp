@@ -27,4 +27,7 @@ struct ModbusTcpConfig {
 [[nodiscard]] Result<std::unique_ptr<Modbus>> open_modbus_rtu(const ModbusRtuConfig& config);
 [[nodiscard]] Result<std::unique_ptr<Modbus>> open_modbus_tcp(const ModbusTcpConfig& config);
 
+// "libmodbus 3.1.6", or "built without libmodbus".
+[[nodiscard]] std::string modbus_library();
+
 }  // namespace forager::hal
