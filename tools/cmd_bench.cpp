@@ -12,6 +12,7 @@
 #include "tools/bench_duel.hpp"
 #include "tools/bench_jitter.hpp"
 #include "tools/bench_mission.hpp"
+#include "tools/bench_overhead.hpp"
 #include "tools/bench_row.hpp"
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
@@ -117,6 +118,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   speed->callback([command, &exit_code] { exit_code = run_bench_speed(*command); });
   add_accuracy_command(*bench, exit_code);
   add_jitter_command(*bench, exit_code);
+  add_overhead_command(*bench, exit_code);
 }
 
 }  // namespace forager::tools

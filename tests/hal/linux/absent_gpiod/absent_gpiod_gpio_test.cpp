@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hal/linux/bare_calls.hpp"
 #include "hal/linux/gpio.hpp"
 
 namespace forager::hal {
@@ -23,6 +24,7 @@ TEST(AbsentGpio, EveryWayInSaysWhatToInstall) {
   expect_absent(open_gpio_edges(line));
   expect_absent(open_gpio_group({line}));
   expect_absent(list_gpio());
+  expect_absent(open_bare_gpio("/dev/gpiochip0", 17));
 }
 
 }  // namespace
