@@ -18,14 +18,14 @@ void ReadCount::add(std::int16_t rssi_dbm, bool new_tag) {
   strongest_dbm = std::max(strongest_dbm, rssi_dbm);
 }
 
-ReadTally::ReadTally(std::span<const ReadPort> ports) : tags_(1024) {
+ReadTally::ReadTally(std::span<const ReadPort> ports) : planned_(!ports.empty()), tags_(1024) {
   for (const ReadPort& port : ports) ports_.push_back({port.port, port.name, {}, {}, {}});
 }
 
 std::size_t ReadTally::index_of(std::uint8_t port) {
   const auto found = std::ranges::find(ports_, port, &Port::port);
   if (found != ports_.end()) return static_cast<std::size_t>(found - ports_.begin());
-  ports_.push_back({port, "not in the plan", {}, {}, {}});
+  ports_.push_back({port, planned_ ? "not in the plan" : "port " + std::to_string(port), {}, {}, {}});
   return ports_.size() - 1;
 }
 

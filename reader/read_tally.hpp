@@ -32,12 +32,13 @@ class ReadTally {
  public:
   struct Port {
     std::uint8_t port = 0;
-    std::string name;  // "not in the plan" for one that is not
+    std::string name;  // "not in the plan" for one that is not; without a plan "port 3"
     ReadCount total;
     ReadCount interval;
     std::optional<hal::Instant> last_heard;  // time of the newest read, on our time line
   };
 
+  // No ports: there is no plan, and every port is taken as it comes.
   explicit ReadTally(std::span<const ReadPort> ports);
 
   void add(std::span<const TagRead> reads);
@@ -61,6 +62,7 @@ class ReadTally {
   };
   std::size_t index_of(std::uint8_t port);
 
+  bool planned_;
   std::vector<Port> ports_;
   EpcTable<Seen> tags_;
   ReadCount total_;

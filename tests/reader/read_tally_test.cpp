@@ -67,5 +67,14 @@ TEST(ReadTally, AReadWithoutRssiCountsAndLeavesTheMeanAlone) {
   EXPECT_FALSE(ReadCount{}.mean_rssi_dbm());
 }
 
+TEST(ReadTallyWithoutAPlan, TakesPortsAsTheyCome) {
+  ReadTally tally({});
+  TagRead read;
+  read.port = 3;
+  tally.add(std::span(&read, 1));
+  ASSERT_EQ(tally.ports().size(), 1U);
+  EXPECT_EQ(tally.ports()[0].name, "port 3");
+}
+
 }  // namespace
 }  // namespace forager::reader
