@@ -14,7 +14,8 @@ function(forager_library folder)
       $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/forager>)
     target_compile_features(forager_${name} PUBLIC cxx_std_20)
     target_link_libraries(forager_${name} PUBLIC ${arg_LINKS}
-      PRIVATE $<BUILD_INTERFACE:forager_flags> ${arg_PRIVATE_LINKS})
+      PRIVATE $<BUILD_INTERFACE:forager_flags> $<BUILD_INTERFACE:forager_coverage>
+      ${arg_PRIVATE_LINKS})
   else()
     add_library(forager_${name} INTERFACE)
     target_include_directories(forager_${name} INTERFACE

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
@@ -65,7 +66,7 @@ TEST_F(BoardFile, TheShortestOneIsThePortsEverythingUsesByItself) {
 }
 
 TEST_F(BoardFile, TheOneInTheProjectLoads) {
-  const auto board = load_board(std::string(FORAGER_SOURCE_DIR) + "/boards/emulated.toml");
+  const auto board = load_board(test::source_path("boards/emulated.toml"));
   ASSERT_TRUE(board) << describe(board.error());
   EXPECT_EQ(board->name, "emulated");
 }

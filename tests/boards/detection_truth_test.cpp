@@ -10,6 +10,7 @@
 #include <string>
 
 #include "hal/units.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using mocks::DetectionFormula;
 
 TEST(DetectionTruth, TheCurveIsExactToAHundredBits) {
-  std::ifstream file(FORAGER_TEST_DATA "/detection/curve.csv");
+  std::ifstream file(test::data_path("detection/curve.csv"));
   std::string line;
   std::size_t rows = 0;
   while (std::getline(file, line)) {

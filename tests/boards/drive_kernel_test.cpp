@@ -15,6 +15,7 @@
 #include "servo/pwm_brake.hpp"
 #include "tests/hal/linux/fake_kernel.hpp"
 #include "tests/hal/linux/fake_pwm_chip.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -30,7 +31,7 @@ double place(hal::fake::FakePwmChip& chip, std::size_t line, double pressed_us) 
 }
 
 TEST(DriveOverSysfs, ReachesTheGoalAndLeavesTheBrakesLockedInTheKernel) {
-  const auto scene = load_drive_scene(FORAGER_SOURCE_DIR "/scenes/course.toml");
+  const auto scene = load_drive_scene(test::source_path("scenes/course.toml"));
   ASSERT_TRUE(scene);
   hal::fake::FakeKernel kernel;
   mocks::VirtualClock clock{Instant{}};

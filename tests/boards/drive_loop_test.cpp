@@ -12,6 +12,7 @@
 #include "mocks/fake_digital_in.hpp"
 #include "mocks/sim_pose_source.hpp"
 #include "mocks/text_journal.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -53,7 +54,7 @@ struct Bench {
     return left.demand() == 1.0 && right.demand() == 1.0 && autopilot.thrust() == 0.0;
   }
 
-  DriveScene scene = load_drive_scene(FORAGER_SOURCE_DIR "/scenes/course.toml").value();
+  DriveScene scene = load_drive_scene(test::source_path("scenes/course.toml")).value();
   DrivePlantDraw draw = draw_plant(scene, 3);
   mocks::RollingVehicle vehicle{draw.vehicle, scene.start};
   mocks::SimPoseSource camera{vehicle, mocks::SimPoseOptions{}, 5};

@@ -9,6 +9,7 @@
 #include "boards/drive_plant.hpp"
 #include "hal/units.hpp"
 #include "mocks/text_journal.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using flight::DriveEnd;
 
 const DriveScene& course() {
-  static const DriveScene scene = load_drive_scene(FORAGER_SOURCE_DIR "/scenes/course.toml").value();
+  static const DriveScene scene = load_drive_scene(test::source_path("scenes/course.toml")).value();
   return scene;
 }
 

@@ -9,13 +9,14 @@
 #include "boards/drive_path.hpp"
 #include "boards/drive_run.hpp"
 #include "hal/units.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kCourse = FORAGER_SOURCE_DIR "/scenes/course.toml";
+const std::string kCourse = test::source_path("scenes/course.toml");
 
 hal::Result<DriveScene> read(const std::string& text) {
   const auto root = parse_config(text, "test.toml");

@@ -7,6 +7,7 @@
 
 #include "boards/run.hpp"
 #include "boards/run_journal.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -28,12 +29,10 @@ double FlownMission::coverage() const {
 }
 
 Scene published_scene(const std::string& name) {
-  return loaded(std::string(FORAGER_SOURCE_DIR) + "/scenes/" + name + ".toml");
+  return loaded(test::source_path("scenes/") + name + ".toml");
 }
 
-Scene test_scene(const std::string& name) {
-  return loaded(std::string(FORAGER_TEST_DATA) + "/mission/" + name + ".toml");
-}
+Scene test_scene(const std::string& name) { return loaded(test::data_path("mission/") + name + ".toml"); }
 
 FlownMission fly(const Scene& scene, const FlyOptions& options) {
   FlownMission flown{.summary = {}, .decisions = {}, .path = {}, .journal = {}};

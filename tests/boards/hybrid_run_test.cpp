@@ -10,11 +10,12 @@
 #include <string>
 
 #include "mocks/text_journal.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
 
-std::string hop_file() { return std::string(FORAGER_SOURCE_DIR) + "/scenes/hop.toml"; }
+std::string hop_file() { return test::source_path("scenes/hop.toml"); }
 
 HybridScene hop_scene() { return load_hybrid_scene(hop_file()).value(); }
 
@@ -129,7 +130,7 @@ TEST(HybridScene, SaysWhatIsWrong) {
   EXPECT_NE(refusal("height_m = 0.30", "height_m = -1").find("height_m"), std::string::npos);
   EXPECT_NE(refusal("mass_kg = 3.5\n", "mass_kg = 40\n").find("rolling"), std::string::npos);
   EXPECT_TRUE(is_hybrid_scene(hop_file()));
-  EXPECT_FALSE(is_hybrid_scene(std::string(FORAGER_SOURCE_DIR) + "/scenes/course.toml"));
+  EXPECT_FALSE(is_hybrid_scene(test::source_path("scenes/course.toml")));
   EXPECT_FALSE(is_hybrid_scene("no such file"));
 }
 

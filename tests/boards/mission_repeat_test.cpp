@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/boards/flown_mission.hpp"
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
@@ -72,7 +73,7 @@ constexpr const char* kExplanation =
     "# FORAGER_RENEW_GOLDEN=1 boards_tests --gtest_filter='RepeatedMission.EveryBuild*'\n";
 
 TEST_F(RepeatedMission, EveryBuildFliesTheSameBytes) {
-  const std::string golden = std::string(FORAGER_TEST_DATA) + "/mission/small_seed1.txt";
+  const std::string golden = test::data_path("mission/small_seed1.txt");
   const FlownMission mission = fly(test_scene("small"), {.seed = 1, .wire = true});
   RecordProperty("journal_digest", fmt::format("{:016x}", mission.digest()));
   if (std::getenv("FORAGER_RENEW_GOLDEN") != nullptr) {

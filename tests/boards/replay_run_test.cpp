@@ -6,6 +6,7 @@
 #include "boards/board.hpp"
 #include "boards/run.hpp"
 #include "boards/scene.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -21,7 +22,7 @@ struct Flown {
 const Flown& flown() {
   static const Flown once = [] {
     Flown out;
-    const RecordedRun what{FORAGER_SOURCE_DIR "/scenes/3A.toml", "", "sim", 3};
+    const RecordedRun what{test::source_path("scenes/3A.toml"), "", "sim", 3};
     const RunRecording recording{[&out](std::string_view line) { out.text += line; }, fields_of(what)};
     const Scene scene = load_scene(what.scene).value();
     hal::NullJournal journal;

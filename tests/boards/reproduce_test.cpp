@@ -8,13 +8,14 @@
 #include <cmath>
 
 #include "boards/published_fit.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
 
 using testing::HasSubstr;
 
-const std::string kScenes = std::string(FORAGER_SOURCE_DIR) + "/scenes";
+const std::string kScenes = test::source_path("scenes");
 // Medians over these come within a point or two of those over twenty.
 constexpr std::uint64_t kFewSeeds = FORAGER_MISSION_SEEDS / 4;
 

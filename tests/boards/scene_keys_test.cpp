@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "boards/scene.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
@@ -41,7 +42,7 @@ std::vector<std::string> cells_of(const std::string& row) {
 
 // Sections "vehicle", "reader.port", ... of the page, by their headings.
 std::map<std::string, Section> documented() {
-  std::ifstream page(std::string(FORAGER_SOURCE_DIR) + "/docs/boards.md");
+  std::ifstream page(test::source_path("docs/boards.md"));
   std::map<std::string, Section> sections;
   std::string section;
   for (std::string line; std::getline(page, line);) {

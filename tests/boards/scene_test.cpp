@@ -7,13 +7,14 @@
 #include <string>
 
 #include "hal/units.hpp"
+#include "tests/places.hpp"
 
 namespace forager::boards {
 namespace {
 
 using testing::HasSubstr;
 
-const std::string kScenes = std::string(FORAGER_SOURCE_DIR) + "/scenes/";
+const std::string kScenes = test::source_path("scenes/");
 
 constexpr const char* kSmall = R"(
 [scene]

@@ -11,6 +11,7 @@
 #include "flight/mavlink_autopilot.hpp"
 #include "flight/motor_authority.hpp"
 #include "mocks/text_journal.hpp"
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace forager::boards {
@@ -50,7 +51,7 @@ class SerialAutopilotTest : public testing::Test {
 
   test::ScratchFolder folder_;
   std::string port_ = folder_.file("pixhawk");
-  Scene scene_ = load_scene(FORAGER_SOURCE_DIR "/scenes/3A.toml").value();
+  Scene scene_ = load_scene(test::source_path("scenes/3A.toml")).value();
   mocks::TextJournal journal_;
   flight::MotorBay bay_;
   hal::Instant now_{1s};

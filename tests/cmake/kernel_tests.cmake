@@ -3,7 +3,6 @@ if(FORAGER_HAVE_GPIOD)
   file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/kernel/*.cpp")
   add_executable(kernel_tests EXCLUDE_FROM_ALL ${sources})
   target_include_directories(kernel_tests PRIVATE "${PROJECT_SOURCE_DIR}")
-  target_compile_definitions(kernel_tests PRIVATE FORAGER_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(kernel_tests PRIVATE forager_tools forager_boards forager_mocks forager_hal_linux forager_servo
-                        forager_flags fmt::fmt GTest::gmock Threads::Threads)
+                        forager_flags forager_quick_compile forager_test_places fmt::fmt GTest::gmock Threads::Threads)
 endif()

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mocks/antenna_pattern.hpp"
+#include "tests/places.hpp"
 
 namespace forager::mocks {
 namespace {
@@ -48,7 +49,7 @@ TEST(Detection, AgreesWithExtendedPrecisionDownToTheLastRepresentableTail) {
 
 // tests/data/detection/curve.csv: 298 bits, kept to 105.
 TEST(Detection, CompensatedStaysWithinTwoUlpOfTheExactCurve) {
-  std::ifstream file(FORAGER_TEST_DATA "/detection/curve.csv");
+  std::ifstream file(forager::test::data_path("detection/curve.csv"));
   std::string line;
   std::size_t rows = 0;
   double worst_ulp = 0.0;

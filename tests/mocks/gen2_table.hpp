@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "tests/places.hpp"
+
 namespace forager::mocks {
 
 // Rows of tests/data/gen2/<name>, by column; lines with # are comments, the first other one is the heading.
 using TableRow = std::map<std::string, std::string>;
 inline std::vector<TableRow> gen2_table(const std::string& name) {
-  std::ifstream file(std::string(FORAGER_TEST_DATA) + "/gen2/" + name);
+  std::ifstream file(forager::test::data_path("gen2/") + name);
   std::vector<std::string> heading;
   std::vector<TableRow> rows;
   for (std::string line; std::getline(file, line);) {

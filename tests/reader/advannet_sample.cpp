@@ -6,10 +6,12 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/places.hpp"
+
 namespace forager::test {
 
 std::string advannet_file(std::string_view name) {
-  const std::string path = fmt::format("{}/advannet/{}", FORAGER_TEST_DATA, name);
+  const std::string path = data_path("advannet/" + std::string(name));
   std::ifstream file(path, std::ios::binary);
   EXPECT_TRUE(file) << path;
   return {std::istreambuf_iterator<char>(file), {}};

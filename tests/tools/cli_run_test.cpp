@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "reader/inventory_store.hpp"
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
@@ -21,7 +22,7 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string kScenes = std::string(FORAGER_SOURCE_DIR) + "/scenes/";
+const std::string kScenes = test::source_path("scenes/");
 const std::string kScene = kScenes + "4A.toml";
 
 std::vector<json> lines_of(const std::string& out) {

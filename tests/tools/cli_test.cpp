@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reader/inventory_store.hpp"
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
@@ -18,7 +19,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string kScene = std::string(FORAGER_SOURCE_DIR) + "/scenes/4A.toml";
+const std::string kScene = test::source_path("scenes/4A.toml");
 constexpr int kUsage = 2;
 constexpr int kUnavailable = 3;
 

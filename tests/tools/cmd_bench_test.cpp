@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/places.hpp"
 #include "tools/bench_duel.hpp"
 #include "tools/bench_row.hpp"
 #include "tools/cli_style.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kSmall = std::string(FORAGER_TEST_DATA) + "/mission/small.toml";
+const std::string kSmall = test::data_path("mission/small.toml");
 
 class BenchCommandLine : public testing::Test {
  protected:

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/places.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/socket_rig.hpp"
 
@@ -52,7 +53,7 @@ TEST(CmdDepth, WatchRepeatsItAndEqualSeedsPrintEqualBytes) {
 }
 
 TEST(CmdDepth, ASceneBringsItsOwnShelves) {
-  const std::string scene = std::string(FORAGER_SOURCE_DIR) + "/scenes/4A.toml";
+  const std::string scene = test::source_path("scenes/4A.toml");
   const Json frame = last_event(run_program({"depth", "frame", "--scene", scene, "--json"}).out, "frame");
   // 4A's aisle is 3.5 m wide: shelves at both sides, the way ahead free.
   EXPECT_TRUE(frame["sectors"][0]["nearest_m"].is_number());

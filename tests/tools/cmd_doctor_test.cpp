@@ -14,6 +14,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/fake_machine.hpp"
 #include "tests/tools/program.hpp"
@@ -229,7 +230,7 @@ TEST_F(CmdDoctor, DeviceUnplugged) {
 }
 
 std::string text_of(const std::string& page) {
-  std::ifstream in(std::string(FORAGER_SOURCE_DIR) + "/" + page);
+  std::ifstream in(test::source_path("") + page);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::string kCourse = std::string(FORAGER_SOURCE_DIR) + "/scenes/course.toml";
+const std::string kCourse = test::source_path("scenes/course.toml");
 
 TEST(DriveCommandLine, TakesAWholeNumberOfRuns) {
   for (const char* runs : {"0", "10000001", "-1", "1.5"}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include "tests/places.hpp"
 #include "tests/tools/socket_rig.hpp"
 
 namespace forager::tools {
@@ -10,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::string scene() { return std::string(FORAGER_SOURCE_DIR) + "/scenes/4A.toml"; }
+std::string scene() { return test::source_path("scenes/4A.toml"); }
 
 std::vector<std::string> anywhere(const std::string& device) {
   std::vector<std::string> arguments{"emulate", device, scene()};

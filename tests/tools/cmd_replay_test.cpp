@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/program.hpp"
@@ -17,7 +18,7 @@ using testing::HasSubstr;
 TEST(CmdReplay, ARecordedMissionIsFlownAgainTheSame) {
   const test::ScratchFolder folder;
   const std::string file = folder.file("flight.recording");
-  const std::string scene = FORAGER_SOURCE_DIR "/scenes/3A.toml";
+  const std::string scene = test::source_path("scenes/3A.toml");
   const auto flown = run_program({"run", scene, "--seed", "5", "--no-files", "--quiet", "--record", file});
   ASSERT_EQ(flown.exit_code, 0) << flown.err;
   const auto replayed = run_program({"replay", file});

@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 #include "tools/cli_style.hpp"
@@ -16,8 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kScenes = std::string(FORAGER_SOURCE_DIR) + "/scenes";
-const std::string kShelf = std::string(FORAGER_TEST_DATA) + "/mission/calibration.toml";
+const std::string kScenes = test::source_path("scenes");
+const std::string kShelf = test::data_path("mission/calibration.toml");
 
 ProgramResult forager(const std::vector<std::string>& arguments) {
   ProgramOptions options;

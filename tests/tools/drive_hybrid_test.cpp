@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::string kHop = std::string(FORAGER_SOURCE_DIR) + "/scenes/hop.toml";
+const std::string kHop = test::source_path("scenes/hop.toml");
 
 TEST(DriveHybrid, HopsAndPrintsItsAssumptions) {
   const ProgramResult result = run_program({"drive", kHop, "--seed", "4", "--runs", "2"});

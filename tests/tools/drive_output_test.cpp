@@ -7,6 +7,7 @@
 #include <string>
 
 #include "boards/drive_campaign.hpp"
+#include "tests/places.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/cmd_drive.hpp"
 
@@ -17,7 +18,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr const char* kCourse = FORAGER_SOURCE_DIR "/scenes/course.toml";
+const std::string kCourse = test::source_path("scenes/course.toml");
 
 boards::DriveScene course() { return boards::load_drive_scene(kCourse).value(); }
 

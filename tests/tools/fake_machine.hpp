@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/tools/program.hpp"
 
 namespace forager::tools {
@@ -14,7 +15,7 @@ struct FakeMachine {
   [[nodiscard]] ProgramOptions options() const {
     ProgramOptions options;
     options.environment = {
-        {"LD_PRELOAD", FORAGER_FAKE_MACHINE},
+        {"LD_PRELOAD", test::fake_machine()},
         // A sanitizer's runtime wants to be first; that nothing of it is used here is enough.
         {"ASAN_OPTIONS", "verify_asan_link_order=0"},
         {"FORAGER_FAKE_GPIO", gpio},

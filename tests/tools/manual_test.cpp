@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
@@ -120,7 +121,7 @@ TEST(ManualPage, CanBeWrittenToAFile) {
 // What bash offers after these words, the last of which is being typed.
 std::vector<std::string> offered(const std::vector<std::string>& words) {
   std::string script =
-      "cd " FORAGER_SOURCE_DIR " && source tools/forager.bash-completion && COMP_WORDS=(" FORAGER_PROGRAM;
+      "source " + test::source_path("tools/forager.bash-completion") + " && COMP_WORDS=(" + test::program();
   for (const std::string& word : words) script += " '" + word + "'";
   script += ") && COMP_CWORD=" + std::to_string(words.size()) +
             " && _forager && printf '%s\\n' \"${COMPREPLY[@]}\"";

@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "tests/places.hpp"
+
 namespace forager::tools {
 namespace {
 
@@ -60,7 +62,7 @@ Program::~Program() {
 void Program::start(const std::vector<std::string>& arguments, const ProgramOptions& options) {
   Pipe out = make_pipe();
   Pipe err = make_pipe();
-  std::vector<char*> argv{const_cast<char*>(FORAGER_PROGRAM)};
+  std::vector<char*> argv{const_cast<char*>(test::program())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   pid_ = fork();
@@ -73,7 +75,7 @@ void Program::start(const std::vector<std::string>& arguments, const ProgramOpti
     close(out.read_end);
     for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
     if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(127);
-    execv(FORAGER_PROGRAM, argv.data());
+    execv(test::program(), argv.data());
     _exit(127);
   }
   close_end(out.write_end);

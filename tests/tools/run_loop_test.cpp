@@ -11,6 +11,7 @@
 
 #include "boards/run_clock.hpp"
 #include "boards/run_journal.hpp"
+#include "tests/places.hpp"
 
 namespace forager::tools {
 namespace {
@@ -66,7 +67,7 @@ class RunLoop : public testing::Test {
         });
     ASSERT_TRUE(journal);
     journal_ = std::move(*journal);
-    const auto scene = boards::load_scene(std::string(FORAGER_SOURCE_DIR) + "/scenes/4A.toml");
+    const auto scene = boards::load_scene(test::source_path("scenes/4A.toml"));
     ASSERT_TRUE(scene);
     auto run = Run::prepare(*scene, boards::sim_board(), {.inventory_path = {}, .journal = journal_.get()},
                             clock_->now());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/notify_listener.hpp"
+#include "tests/places.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/program.hpp"
 
@@ -16,7 +17,7 @@ TEST(Service, AMissionSaysThatItIsReadyAndThatItLives) {
   test::ScratchFolder folder;
   test::NotifyListener systemd(folder.file("notify"));
   const ProgramResult flown =
-      run_program({"run", FORAGER_SOURCE_DIR "/scenes/4A.toml", "--no-files", "--quiet"},
+      run_program({"run", test::source_path("scenes/4A.toml"), "--no-files", "--quiet"},
                   {.folder = folder.path(),
                    .environment = {{"NOTIFY_SOCKET", folder.file("notify")}, {"WATCHDOG_USEC", "2000000"}}});
   EXPECT_EQ(flown.exit_code, 0) << flown.err;

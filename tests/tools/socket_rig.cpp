@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "hal/linux/curl_http_client.hpp"
+#include "tests/places.hpp"
 
 namespace forager::tools {
 namespace {
@@ -98,7 +99,7 @@ SocketRig::~SocketRig() {
 // waiting ten times as long in their own time. The air is better than the laboratory's, so that chance leaves
 // few of the tags unread: 37 or more of the 40 over two hundred seeds.
 void SocketRig::write_scene(const Options& options) const {
-  std::ofstream(file("aisle.toml")) << fmt::format(R"(base = "{}/scenes/lab.toml"
+  std::ofstream(file("aisle.toml")) << fmt::format(R"(base = "{}"
 [scene]
 name = "aisle"
 title = "40 tags along one short shelf"
@@ -122,7 +123,8 @@ centres = [[1.5, 1.8, 1.5], [2.2, 1.8, 1.5], [2.9, 1.8, 1.5], [3.6, 1.8, 1.5]]
 [world.radio]
 t0_s = 2.0
 )",
-                                                   FORAGER_SOURCE_DIR, options.mission, options.links);
+                                                   test::source_path("scenes/lab.toml"), options.mission,
+                                                   options.links);
 }
 
 void SocketRig::write_board(const Options& options) const {

@@ -16,6 +16,7 @@
 #include "mocks/rolling_vehicle.hpp"
 #include "mocks/sim_pose_source.hpp"
 #include "servo/digital_brake.hpp"
+#include "tests/places.hpp"
 
 // The drive loop on the real GPIO backend, spring-applied brakes on two lines and the stop button on a third:
 // as tests for every kernel alike. Include it in one file of a test program and instantiate DriveOverGpio.
@@ -65,7 +66,7 @@ class DriveOverGpio : public testing::TestWithParam<DriveLinesMaker> {
   };
 
   void SetUp() override {
-    auto scene = load_drive_scene(FORAGER_SOURCE_DIR "/scenes/course.toml");
+    auto scene = load_drive_scene(test::source_path("scenes/course.toml"));
     ASSERT_TRUE(scene);
     scene_ = *std::move(scene);
     // A solenoid is all or nothing, and quick.

@@ -7,6 +7,7 @@
 #include "flight/mavlink/parser.hpp"
 #include "flight/mavlink/signing.hpp"
 #include "tests/flight/mavlink/message_json.hpp"
+#include "tests/places.hpp"
 
 // Every golden frame, both ways: our bytes are those of the official C library, and its bytes read back as
 // the values it was given.
@@ -17,7 +18,7 @@ using test::from_hex;
 using test::to_hex;
 
 nlohmann::json golden() {
-  return nlohmann::json::parse(std::ifstream(FORAGER_TEST_DATA "/mavlink/golden_frames.json"));
+  return nlohmann::json::parse(std::ifstream(forager::test::data_path("mavlink/golden_frames.json")));
 }
 
 SigningKey golden_key(const nlohmann::json& file) {

@@ -9,13 +9,14 @@
 
 #include "flight/mavlink/crc.hpp"
 #include "flight/mavlink/registry.hpp"
+#include "tests/places.hpp"
 
 namespace forager::flight::mavlink {
 namespace {
 
 std::map<std::string, std::string> official_facts() {
   std::map<std::string, std::string> facts;
-  std::ifstream file(FORAGER_TEST_DATA "/mavlink/messages.csv");
+  std::ifstream file(forager::test::data_path("mavlink/messages.csv"));
   for (std::string line; std::getline(file, line);)
     if (!line.empty() && line.front() != '#') facts[line.substr(0, line.find(','))] = line;
   return facts;

@@ -16,6 +16,7 @@
 #include "tests/hal/eventually.hpp"
 #include "tests/hal/linux/modbus/line_pump.hpp"
 #include "tests/hal/linux/modbus/served_slave.hpp"
+#include "tests/places.hpp"
 
 // Against implementations that are nobody's here: python3-pymodbus as the slave, mbpoll as the master.
 namespace forager::hal {
@@ -67,7 +68,7 @@ class Program {
 
 // Debian's own, whose packages these are.
 const std::string kPython = "/usr/bin/python3";
-const std::string kSlave = FORAGER_SOURCE_DIR "/tests/hal/linux/modbus/pymodbus_slave.py";
+const std::string kSlave = test::source_path("tests/hal/linux/modbus/pymodbus_slave.py");
 
 bool has_pymodbus(const std::string& modules) {
   return run(kPython + " -c 'import " + modules + "'").status == 0;
