@@ -112,6 +112,22 @@ BenchSerial read_serial(ConfigReader& table, std::vector<std::string>& taken) {
   return serial;
 }
 
+BenchWedge read_wedge(ConfigReader& table, std::vector<std::string>& taken) {
+  BenchWedge wedge;
+  wedge.name = read_name(table, taken);
+  const auto id = [&table](std::string_view key) -> std::optional<std::uint16_t> {
+    if (!table.has(key)) return std::nullopt;
+    return static_cast<std::uint16_t>(table.integer(key, 0, {0, 0xFFFF}));
+  };
+  wedge.device.vendor = id("vendor");
+  wedge.device.product = id("product");
+  wedge.device.serial = table.text("serial", "");
+  wedge.device.path = table.text("path", "");
+  wedge.epc_digits = static_cast<std::size_t>(table.integer("epc_digits", 0, {0, 124}));
+  wedge.pause = table.duration("pause_ms", wedge.pause, {10, 10000});
+  return wedge;
+}
+
 void add_brake(BenchBoard& bench, const std::string& name, const BrakeLine& line, hal::Duration period) {
   BenchServo servo;
   servo.name = name;
@@ -146,6 +162,7 @@ BenchBoard read_bench_board(ConfigReader& top) {
   for (ConfigReader& table : top.tables("servo")) board.servos.push_back(read_servo(table, taken));
   for (ConfigReader& table : top.tables("i2c")) board.chips.push_back(read_chip(table, taken));
   for (ConfigReader& table : top.tables("serial")) board.serials.push_back(read_serial(table, taken));
+  for (ConfigReader& table : top.tables("wedge")) board.wedges.push_back(read_wedge(table, taken));
   return board;
 }
 

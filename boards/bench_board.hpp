@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "boards/brake_board.hpp"
 #include "boards/config_reader.hpp"
 #include "hal/error.hpp"
+#include "hal/hid_facts.hpp"
 #include "hal/time.hpp"
 #include "servo/servo.hpp"
 
@@ -74,15 +76,24 @@ struct BenchSerial {
   SerialPeer peer = SerialPeer::silent;
 };
 
+// A reader that types what it reads as a keyboard: [[wedge]].
+struct BenchWedge {
+  std::string name;
+  hal::HidMatch device;  // path "sim": emulated in this process
+  std::size_t epc_digits = 0;
+  hal::Duration pause = std::chrono::milliseconds(200);
+};
+
 // The single devices of a board file, by name.
 struct BenchBoard {
   std::vector<BenchLine> lines;
   std::vector<BenchServo> servos;
   std::vector<BenchChip> chips;
   std::vector<BenchSerial> serials;
+  std::vector<BenchWedge> wedges;
 };
 
-// Reads [[gpio]], [[servo]], [[i2c]] and [[serial]]; mistakes become the reader's issue.
+// Reads [[gpio]], [[servo]], [[i2c]], [[serial]] and [[wedge]]; mistakes become the reader's issue.
 [[nodiscard]] BenchBoard read_bench_board(ConfigReader& top);
 
 // The brakes of the same file that are servos on a PWM output of this machine, as "brakes.left" and

@@ -1,6 +1,9 @@
 #include "boards/brake_board.hpp"
 
 #include <array>
+#include <string>
+
+#include "boards/modbus_board.hpp"
 
 namespace forager::boards {
 namespace {
@@ -23,6 +26,7 @@ constexpr Range kSlew{4.0, 1000.0};
 // at the last moment, fit into that time, too.
 constexpr Range kModbusTimeout_ms{1, 50};
 constexpr Range kRegister{0, 65535};
+constexpr Range kPosition{-1e9, 1e9};  // in the unit of the target register
 
 hal::Duration micros(ConfigReader& table, std::string_view key, hal::Duration fallback, Range allowed) {
   const double fallback_us = std::chrono::duration<double, std::micro>(fallback).count();
@@ -61,6 +65,15 @@ void read_gpio(ConfigReader& table, BrakeLine& line) {
     line.when_active = servo::WhenActive::locks;
 }
 
+// `target = { address = 40, scale = 0.1, ... }`, or for a plain u16 `target_register = 40` alone.
+void read_position(ConfigReader& table, const std::string& key, servo::ModbusRegister& position) {
+  const std::string plain = key + "_register";
+  if (table.has(key) && table.has(plain))
+    table.complain(plain, "and " + key + " exclude each other", "Give one of them.");
+  if (ConfigReader map = table.table(key); map.present()) return read_register_map(map, position);
+  position.address = static_cast<std::uint16_t>(table.integer(plain, position.address, kRegister));
+}
+
 void read_modbus(ConfigReader& table, BrakeLine& line) {
   table.require("bus", "a serial port or HOST:PORT, such as bus = \"/dev/ttyUSB0\"");
   line.bus = table.text("bus", "");
@@ -73,14 +86,25 @@ void read_modbus(ConfigReader& table, BrakeLine& line) {
     return static_cast<std::uint16_t>(table.integer(key, fallback, kRegister));
   };
   actuator.unit = static_cast<std::uint8_t>(table.integer("unit", actuator.unit, {1, 247}));
-  actuator.target_register = number("target_register", actuator.target_register);
-  actuator.open_value = number("open_value", actuator.open_value);
-  actuator.locked_value = number("locked_value", actuator.locked_value);
-  if (table.has("measured_register")) actuator.measured_register = number("measured_register", 0);
+  read_position(table, "target", actuator.target);
+  actuator.open_value = table.number("open_value", actuator.open_value, kPosition);
+  actuator.locked_value = table.number("locked_value", actuator.locked_value, kPosition);
+  if (table.has("measured") || table.has("measured_register"))
+    read_position(table, "measured",
+                  actuator.measured.emplace(
+                      servo::ModbusRegister{.name = "measured", .table = servo::RegisterTable::input}));
   if (table.has("enable_coil")) actuator.enable_coil = number("enable_coil", 0);
   actuator.slew_per_s = table.number("slew_per_s", actuator.slew_per_s, kSlew);
   if (actuator.open_value == actuator.locked_value)
     table.complain("locked_value", "is the same as open_value", "See the actuator's manual.");
+  if (actuator.target.table == servo::RegisterTable::input)
+    table.complain("target", "is an input register, which can only be read", "See the actuator's manual.");
+  for (const char* end : {"open_value", "locked_value"})
+    if (const auto fits =
+            servo::encode(actuator.target, end == std::string_view("open_value") ? actuator.open_value
+                                                                                 : actuator.locked_value);
+        !fits)
+      table.complain(end, fits.error().detail, "Correct it, or type and scale of target.");
 }
 
 BrakeBackend backend_of(ConfigReader& table) {
@@ -128,7 +152,7 @@ bool same_place(const BrakeLine& a, const BrakeLine& b) {
   if (a.backend != b.backend || a.backend == BrakeBackend::sim) return false;
   if (a.backend == BrakeBackend::modbus)
     return a.bus == b.bus && a.actuator.unit == b.actuator.unit &&
-           a.actuator.target_register == b.actuator.target_register;
+           a.actuator.target.address == b.actuator.target.address;
   return a.chip == b.chip && a.bus == b.bus && a.line == b.line && a.channel == b.channel &&
          (a.backend != BrakeBackend::pca9685 || a.address == b.address);
 }

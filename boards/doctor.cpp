@@ -88,6 +88,7 @@ void check_board(const Doctor& doctor, const Board& board) {
   check_outputs(doctor, board);
   check_actuators(doctor, board);
   check_serials(doctor, board);
+  check_wedges(doctor, board);
 }
 
 void run_doctor(const Board* board, const std::function<void(const Check&)>& tell) {

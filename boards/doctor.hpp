@@ -82,6 +82,7 @@ void check_actuators(const Doctor& doctor, const Board& board);
 void check_reader(const Doctor& doctor, const Board& board);
 void check_autopilot(const Doctor& doctor, const Board& board);
 void check_serials(const Doctor& doctor, const Board& board);
+void check_wedges(const Doctor& doctor, const Board& board);
 
 // On this machine.
 void run_doctor(const Board* board, const std::function<void(const Check&)>& tell);

@@ -19,13 +19,10 @@ void check_actuator(const Doctor& doctor, const std::string& name, const BrakeLi
           : hal::open_modbus_rtu(
                 {.device = line.bus, .baud = line.baud, .parity = line.parity, .timeout = line.timeout});
   if (!bus) return doctor.fail(kArea, name, bus.error());
-  std::uint16_t value = 0;
   const servo::ModbusBrakeConfig& actuator = line.actuator;
-  const auto read = actuator.measured_register
-                        ? (*bus)->read_input(actuator.unit, *actuator.measured_register, std::span(&value, 1))
-                        : (*bus)->read_holding(actuator.unit, actuator.target_register, std::span(&value, 1));
-  if (!read) return doctor.fail(kArea, name, read.error());
-  doctor.ok(kArea, name, fmt::format("unit {} on {} answers, {}", actuator.unit, line.bus, value));
+  const auto position = servo::read(**bus, actuator.unit, actuator.measured.value_or(actuator.target));
+  if (!position) return doctor.fail(kArea, name, position.error());
+  doctor.ok(kArea, name, fmt::format("unit {} on {} answers, {:g}", actuator.unit, line.bus, *position));
 }
 
 void check_device(const Doctor& doctor, hal::Modbus& bus, const ModbusDevice& device) {

@@ -39,19 +39,8 @@ auto value_of(const Table& table, std::string_view name) {
 ModbusRegister read_register(ConfigReader& table) {
   ModbusRegister quantity;
   table.require("name", "what it holds, such as name = \"voltage\"");
-  table.require("address", "its number on the wire, from 0: 40001 of a manual is 0");
   quantity.name = table.text("name", "");
-  quantity.address = static_cast<std::uint16_t>(table.integer("address", 0, kWord));
-  if (table.choice("table", "holding", {"holding", "input"}) == "input")
-    quantity.table = RegisterTable::input;
-  quantity.type = value_of(kTypes, table.choice("type", "u16", {"u16", "i16", "u32", "i32", "f32"}));
-  if (table.choice("word_order", "high_first", {"high_first", "low_first"}) == "low_first")
-    quantity.order = WordOrder::low_first;
-  quantity.scale = table.number("scale", 1.0, {-1e9, 1e9});
-  quantity.offset = table.number("offset", 0.0, {-1e9, 1e9});
-  quantity.unit = table.text("unit", "");
-  if (const auto possible = servo::check(quantity); !possible)
-    table.complain("scale", "and address make no register: " + possible.error().detail, "See the manual.");
+  read_register_map(table, quantity);
   return quantity;
 }
 
@@ -151,6 +140,23 @@ const ModbusDevice* ModbusLine::find(std::string_view device) const {
   const auto found =
       std::find_if(devices.begin(), devices.end(), [&](const auto& d) { return d.name == device; });
   return found == devices.end() ? nullptr : &*found;
+}
+
+void read_register_map(ConfigReader& table, ModbusRegister& quantity) {
+  table.require("address", "its number on the wire, from 0: 40001 of a manual is 0");
+  quantity.address = static_cast<std::uint16_t>(table.integer("address", 0, kWord));
+  const bool input = quantity.table == RegisterTable::input;
+  quantity.table = table.choice("table", input ? "input" : "holding", {"holding", "input"}) == "input"
+                       ? RegisterTable::input
+                       : RegisterTable::holding;
+  quantity.type = value_of(kTypes, table.choice("type", "u16", {"u16", "i16", "u32", "i32", "f32"}));
+  if (table.choice("word_order", "high_first", {"high_first", "low_first"}) == "low_first")
+    quantity.order = WordOrder::low_first;
+  quantity.scale = table.number("scale", 1.0, {-1e9, 1e9});
+  quantity.offset = table.number("offset", 0.0, {-1e9, 1e9});
+  quantity.unit = table.text("unit", "");
+  if (const auto possible = servo::check(quantity); !possible)
+    table.complain("scale", "and address make no register: " + possible.error().detail, "See the manual.");
 }
 
 std::vector<ModbusLine> read_modbus_board(ConfigReader& top) {

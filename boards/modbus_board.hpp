@@ -50,6 +50,10 @@ struct ModbusLine {
   [[nodiscard]] const ModbusDevice* find(std::string_view device) const;
 };
 
+// Reads how a register lies and what it means, `address` to `unit`, over what the quantity says already;
+// mistakes become the reader's issue.
+void read_register_map(ConfigReader& table, servo::ModbusRegister& quantity);
+
 // Reads every [[modbus]]; mistakes become the reader's issue.
 [[nodiscard]] std::vector<ModbusLine> read_modbus_board(ConfigReader& top);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace forager::servo {
@@ -18,6 +17,13 @@ hal::Result<ModbusBrake> ModbusBrake::create(hal::Modbus& bus, const ModbusBrake
       !std::isfinite(config.slew_per_s) || config.refresh <= hal::Duration::zero())
     return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + std::string(bus.name()), "create",
                      "open and locked are the same, or slew limit or refresh is not a positive number");
+  if (config.target.table == RegisterTable::input)
+    return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + std::string(bus.name()), "create",
+                     "the target is an input register, which can only be read");
+  FORAGER_TRY(check(config.target));
+  if (config.measured) FORAGER_TRY(check(*config.measured));
+  for (const double value : {config.open_value, config.locked_value})
+    if (const auto fits = encode(config.target, value); !fits) return hal::fail(fits.error());
   return ModbusBrake(bus, config);
 }
 
@@ -61,25 +67,25 @@ hal::Result<> ModbusBrake::send(double place) {
     FORAGER_TRY(bus_->write_coil(config_.unit, *config_.enable_coil, true));
     enabled_ = true;
   }
-  const double travel = static_cast<double>(config_.locked_value) - static_cast<double>(config_.open_value);
-  const std::array target{static_cast<std::uint16_t>(std::lround(config_.open_value + place * travel))};
-  if (sent_ != target[0]) {
+  const double travel = config_.locked_value - config_.open_value;
+  const auto target = encode(config_.target, config_.open_value + place * travel);
+  if (!target) return hal::fail(target.error());
+  if (sent_ != target->words) {
     sent_.reset();
-    FORAGER_TRY(bus_->write_holding(config_.unit, config_.target_register, target));
-    sent_ = target[0];
+    FORAGER_TRY(bus_->write_holding(config_.unit, config_.target.address, target->used()));
+    sent_ = target->words;
   }
   place_ = place;
   return {};
 }
 
 hal::Result<> ModbusBrake::measure(hal::Instant now) {
-  if (!config_.measured_register || (next_poll_ && now < *next_poll_)) return {};
+  if (!config_.measured || (next_poll_ && now < *next_poll_)) return {};
   next_poll_ = now + config_.poll_interval;
   measured_.reset();
-  std::array<std::uint16_t, 1> raw{};
-  FORAGER_TRY(bus_->read_input(config_.unit, *config_.measured_register, raw));
-  const double travel = static_cast<double>(config_.locked_value) - static_cast<double>(config_.open_value);
-  measured_ = (static_cast<double>(raw[0]) - static_cast<double>(config_.open_value)) / travel;
+  const auto position = read(*bus_, config_.unit, *config_.measured);
+  if (!position) return hal::fail(position.error());
+  measured_ = (*position - config_.open_value) / (config_.locked_value - config_.open_value);
   return {};
 }
 

@@ -1,23 +1,25 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "hal/modbus.hpp"
 #include "servo/brake_actuator.hpp"
+#include "servo/modbus_register.hpp"
 
 namespace forager::servo {
 
-// Where a linear actuator keeps its position, as its manual says; all holding registers but the measured one.
+// Where a linear actuator keeps its position, as its manual says.
 struct ModbusBrakeConfig {
   std::uint8_t unit = 1;
-  std::uint16_t target_register = 0;
-  std::uint16_t open_value = 0;  // of the target register
-  std::uint16_t locked_value = 1000;
-  std::optional<std::uint16_t> measured_register{};  // an input register in the same units; none: no sensor
-  std::optional<std::uint16_t> enable_coil{};        // switched on before the first target
-  double slew_per_s = 4.0;                           // travels per second
+  ModbusRegister target{.name = "target"};  // holding
+  double open_value = 0.0;                  // in the unit of the target
+  double locked_value = 1000.0;
+  std::optional<ModbusRegister> measured{};    // position in the same unit; none: no sensor
+  std::optional<std::uint16_t> enable_coil{};  // switched on before the first target
+  double slew_per_s = 4.0;                     // travels per second
   // The bus is slow: the measured position is read no more often than this.
   hal::Duration poll_interval = std::chrono::milliseconds(100);
   // Coil and target are written again this often, for an actuator that lost its supply for a moment.
@@ -31,7 +33,8 @@ struct ModbusBrakeConfig {
 // one whose own time-out locks it.
 class ModbusBrake final : public BrakeActuator {
  public:
-  // Borrows the bus. Errors: invalid_argument (open and locked the same, slew or refresh not positive).
+  // Borrows the bus. Errors: invalid_argument (open and locked the same, or beyond what the target holds; the
+  // target cannot be written; slew or refresh not positive).
   [[nodiscard]] static hal::Result<ModbusBrake> create(hal::Modbus& bus, const ModbusBrakeConfig& config);
   void halt() noexcept override;
 
@@ -51,7 +54,7 @@ class ModbusBrake final : public BrakeActuator {
   ModbusBrakeConfig config_;
   std::string name_;
   double place_ = 1.0;
-  std::optional<std::uint16_t> sent_;
+  std::optional<std::array<std::uint16_t, 2>> sent_;
   std::optional<double> measured_;
   std::optional<hal::Instant> last_;
   std::optional<hal::Instant> next_poll_;

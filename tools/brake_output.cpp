@@ -30,7 +30,7 @@ std::string place_of(const boards::BrakeLine& line) {
       return fmt::format("{} {}", line.chip, line.line);
     case boards::BrakeBackend::modbus:
       return fmt::format("{} unit {} register {}", line.bus, line.actuator.unit,
-                         line.actuator.target_register);
+                         line.actuator.target.address);
     case boards::BrakeBackend::autopilot:
       return fmt::format("output {}", line.channel);
     case boards::BrakeBackend::sim:
@@ -43,7 +43,7 @@ std::string travel_of(const boards::BrakeLine& line) {
   if (line.backend == boards::BrakeBackend::gpio)
     return line.when_active == servo::WhenActive::opens ? "active opens" : "active locks";
   if (line.backend == boards::BrakeBackend::modbus)
-    return fmt::format("open {}, locked {}", line.actuator.open_value, line.actuator.locked_value);
+    return fmt::format("open {:g}, locked {:g}", line.actuator.open_value, line.actuator.locked_value);
   return fmt::format("open {:g} us, locked {:g} us", in_us(line.pulses.open_pulse),
                      in_us(line.pulses.locked_pulse));
 }

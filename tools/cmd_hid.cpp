@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "boards/board.hpp"
+#include "boards/wedge_bench.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/plug_session.hpp"
 
@@ -118,7 +120,13 @@ int watch_bus(PlugSession& session, hal::Hid& hid) {
 // Input reports of one device.
 int watch_device(const PlugCommand& command, PlugSession& session, hal::Hid& hid) {
   hal::HidMatch match;
-  if (const auto id = usb_id_from(command.device)) {
+  if (!command.board.empty() && command.device.find_first_of(":/") == std::string::npos) {
+    const auto board = boards::load_board(command.board);
+    if (!board) return complain(board.error());
+    const auto wedge = boards::find_wedge(board->bench, command.device);
+    if (!wedge) return complain(wedge.error());
+    match = boards::wedge_config(*wedge).device;
+  } else if (const auto id = usb_id_from(command.device)) {
     match.vendor = id->vendor;
     match.product = id->product;
   } else {
@@ -170,7 +178,9 @@ void add_hid_command(CLI::App& app, int& exit_code) {
   auto watch = std::make_shared<PlugCommand>();
   watch->watch = true;
   sub = hid->add_subcommand("watch", "What comes and goes, or with a device named the reports it sends");
-  sub->add_option("device", watch->device, "VENDOR:PRODUCT in hex, such as 04d8:00dd, or a path");
+  sub->add_option("device", watch->device,
+                  "VENDOR:PRODUCT in hex, such as 04d8:00dd, a path, or a name of the board file");
+  sub->add_option("--board", watch->board, "Board file with [[wedge]]");
   sub->add_flag("--exclusive", watch->exclusive,
                 "What it sends comes here and nowhere else, no console included");
   add_plug_options(sub, watch);

@@ -207,6 +207,11 @@ void add_watch(CLI::App& reader, int& exit_code) {
   sub->add_option("--ports", command->ports, "Antenna ports, such as 1,2,4")
       ->delimiter(',')
       ->check(WholeNumber(32));
+  auto* wedge = sub->add_option("--wedge", command->wedge,
+                                "Instead of the board's reader one that types as a keyboard, by its name");
+  wedge->excludes(listen);
+  for (const char* option : {"--session", "--target", "--power", "--sensitivity", "--ports", "--host"})
+    wedge->excludes(sub->get_option(option));
   for (const char* option : {"--session", "--target", "--power", "--sensitivity", "--ports"})
     listen->excludes(sub->get_option(option));
   sub->add_option("--seed", command->seed, "Of an emulated reader, its air and its tags")

@@ -24,6 +24,7 @@ struct ReaderCommand {
 
   // watch
   bool listen = false;  // to a reader that runs for somebody else
+  std::string wedge;    // name of one that types as a keyboard; instead of the board's reader
   double for_s = 0.0;   // 0: until told to stop
   double every_s = 1.0;
   std::uint64_t least_tags = 0;

@@ -19,7 +19,8 @@ struct PlugCommand {
   bool json = false;
   bool exclusive = false;  // hid
   double for_s = 0.0;
-  std::string device;  // VID:PID, a path, or empty
+  std::string device;  // VID:PID, a path, a name of the board file, or empty
+  std::string board;   // hid: file whose names count; empty: none
 };
 
 // The devices, the clock and the output of such a command.

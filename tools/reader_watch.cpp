@@ -174,6 +174,7 @@ reader::AdvanNetConfig driver_config(const ReaderCommand& command, const boards:
 }
 
 int watch_reader(const ReaderCommand& command, const boards::Board& board, const boards::Scene& scene) {
+  if (!command.wedge.empty()) return watch_wedge(command, board);
   if (command.listen) return listen_to_reader(command, board, scene);
   const auto plan = plan_of(scene, command);
   if (!plan) return complain(plan.error());

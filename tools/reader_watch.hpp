@@ -18,6 +18,9 @@ namespace forager::tools {
 // anything. Gives an exit code: failure when nothing came that was understood.
 int listen_to_reader(const ReaderCommand& command, const boards::Board& board, const boards::Scene& scene);
 
+// The same for a reader that types as a keyboard; while it is watched its keys come here and nowhere else.
+int watch_wedge(const ReaderCommand& command, const boards::Board& board);
+
 // Sets the reader up, starts it, shows what it hears, and stops it on every way out. Gives an exit code.
 int watch_reader(const ReaderCommand& command, const boards::Board& board, const boards::Scene& scene);
 

@@ -97,12 +97,44 @@ slew_per_s = 8
   EXPECT_EQ('O', right.parity);
   EXPECT_EQ(15ms, right.timeout);
   EXPECT_EQ(3, right.actuator.unit);
-  EXPECT_EQ(40, right.actuator.target_register);
+  EXPECT_EQ(40, right.actuator.target.address);
   EXPECT_EQ(900, right.actuator.open_value);
   EXPECT_EQ(100, right.actuator.locked_value);
-  EXPECT_EQ(50, right.actuator.measured_register);
+  ASSERT_TRUE(right.actuator.measured);
+  EXPECT_EQ(50, right.actuator.measured->address);
+  EXPECT_EQ(servo::RegisterTable::input, right.actuator.measured->table);
   EXPECT_EQ(1, right.actuator.enable_coil);
   EXPECT_DOUBLE_EQ(8, right.actuator.slew_per_s);
+}
+
+TEST(BrakeBoard, AnActuatorsRegistersAreDeclaredAsItsManualDescribesThem) {
+  const std::string brakes = R"([brakes]
+left = { backend = "sim" }
+[brakes.right]
+backend = "modbus"
+bus = "/dev/ttyUSB0"
+target = { address = 40, type = "i32", word_order = "low_first", scale = 0.1, unit = "mm" }
+measured = { address = 50, scale = 0.1 }
+open_value = -4.5
+locked_value = 41.5
+)";
+  const auto board = read(brakes);
+  ASSERT_TRUE(board) << describe(board.error());
+  const servo::ModbusBrakeConfig& actuator = board->right.actuator;
+  EXPECT_EQ(servo::RegisterType::i32, actuator.target.type);
+  EXPECT_EQ(servo::WordOrder::low_first, actuator.target.order);
+  EXPECT_DOUBLE_EQ(0.1, actuator.target.scale);
+  EXPECT_EQ(servo::RegisterTable::input, actuator.measured->table);
+  EXPECT_DOUBLE_EQ(-4.5, actuator.open_value);
+  const auto wrong = [&](const std::string& from, const std::string& to) {
+    std::string text = brakes;
+    text.replace(text.find(from), from.size(), to);
+    const auto refused = read(text);
+    return refused ? "accepted" : describe(refused.error());
+  };
+  EXPECT_THAT(wrong("type = \"i32\", word_order = \"low_first\",", ""), HasSubstr("does not fit"));
+  EXPECT_THAT(wrong("address = 40,", "address = 40, table = \"input\","), HasSubstr("can only be read"));
+  EXPECT_THAT(wrong("open_value", "target_register = 3\nopen_value"), HasSubstr("exclude each other"));
 }
 
 // A brake locks within 300 ms of whatever happens; what a turn of the loop waits for both is a part of it.

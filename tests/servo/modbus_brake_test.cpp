@@ -24,14 +24,15 @@ class ModbusBrakeTest : public testing::Test {
   hal::Instant now_{1s};
   hal::Result<> last_;
   mocks::FakeModbus bus_{3};
-  ModbusBrake brake_ = ModbusBrake::create(bus_, {.unit = 3,
-                                                  .target_register = 40,
-                                                  .open_value = 900,
-                                                  .locked_value = 100,
-                                                  .measured_register = 50,
-                                                  .enable_coil = 1,
-                                                  .slew_per_s = 4.0})
-                           .value();
+  ModbusBrake brake_ =
+      ModbusBrake::create(bus_, {.unit = 3,
+                                 .target = {.address = 40},
+                                 .open_value = 900,
+                                 .locked_value = 100,
+                                 .measured = ModbusRegister{.address = 50, .table = RegisterTable::input},
+                                 .enable_coil = 1,
+                                 .slew_per_s = 4.0})
+          .value();
 };
 
 TEST_F(ModbusBrakeTest, MovesWithinItsSlewLimitAndEnablesFirst) {
@@ -64,6 +65,26 @@ TEST_F(ModbusBrakeTest, ASilentActuatorIsAFailureAndNoMeasurement) {
   EXPECT_EQ(900, bus_.holding[40]);
 }
 
+// An actuator that counts tenths of a millimetre from -20 mm on, in two registers, the low word first.
+TEST_F(ModbusBrakeTest, TargetAndPositionAreWhateverTheManualSays) {
+  const ModbusRegister position{
+      .address = 60, .type = RegisterType::i32, .order = WordOrder::low_first, .scale = 0.1, .offset = -20.0};
+  bus_.holding[60] = bus_.holding[61] = 0;
+  auto brake =
+      ModbusBrake::create(
+          bus_,
+          {.unit = 3, .target = position, .open_value = -30.0, .locked_value = 6600.0, .measured = position})
+          .value();
+  ASSERT_TRUE(brake.jump(1.0, now_));  // (6600 + 20) / 0.1 = 66200 = 0x00010298
+  EXPECT_EQ(0x0298, bus_.holding[60]);
+  EXPECT_EQ(1, bus_.holding[61]);
+  EXPECT_DOUBLE_EQ(1.0, brake.measured().value());
+  ASSERT_TRUE(brake.jump(0.0, now_ + 1s));  // -10 / 0.1 = -100
+  EXPECT_EQ(0xFF9C, bus_.holding[60]);
+  EXPECT_EQ(0xFFFF, bus_.holding[61]);
+  EXPECT_DOUBLE_EQ(0.0, brake.measured().value());
+}
+
 TEST_F(ModbusBrakeTest, HaltLocksAtOnce) {
   move(0.0);
   brake_.halt();
@@ -75,6 +96,8 @@ TEST_F(ModbusBrakeTest, RefusesWhatCannotBe) {
   EXPECT_FALSE(ModbusBrake::create(bus_, {.open_value = 5, .locked_value = 5}));
   EXPECT_FALSE(ModbusBrake::create(bus_, {.slew_per_s = 0.0}));
   EXPECT_FALSE(ModbusBrake::create(bus_, {.slew_per_s = INFINITY}));
+  EXPECT_FALSE(ModbusBrake::create(bus_, {.locked_value = 70000.0}));
+  EXPECT_FALSE(ModbusBrake::create(bus_, {.target = {.table = RegisterTable::input}}));
 }
 
 }  // namespace

@@ -156,10 +156,11 @@ TEST_F(ModbusDevicesTest, ACommandRunsOutAndHaltSwitchesOffAtOnce) {
 
 TEST_F(ModbusDevicesTest, TheActuatorFollowsItsDriverAndLocksWhenTheLineDies) {
   auto brake = ModbusBrake::create(bus_, {.unit = 3,
-                                          .target_register = SimLinearActuator::kTarget,
+                                          .target = {.address = SimLinearActuator::kTarget},
                                           .open_value = 400,
                                           .locked_value = 100,
-                                          .measured_register = SimLinearActuator::kPosition,
+                                          .measured = ModbusRegister{.address = SimLinearActuator::kPosition,
+                                                                     .table = RegisterTable::input},
                                           .enable_coil = SimLinearActuator::kEnable,
                                           .slew_per_s = 5.0})
                    .value();

@@ -229,6 +229,15 @@ TEST_F(CmdDoctor, DeviceUnplugged) {
             "                  mend: Check the port's name, the cable and the device's power");
 }
 
+TEST_F(CmdDoctor, AReaderThatTypesIsUnplugged) {
+  if (!built_with("hidapi")) GTEST_SKIP() << "built without hidapi";
+  const ProgramResult result = examine("[[wedge]]\nname = \"gate\"\nvendor = 0x1209\nproduct = 0xfffe\n");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_EQ(told(result.out, "wedge gate"),
+            "failed   board    wedge gate: hid 1209:fffe: no such device is plugged in\n"
+            "                  mend: Check the cable; see what there is: forager hid list");
+}
+
 std::string text_of(const std::string& page) {
   std::ifstream in(test::source_path("") + page);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -112,6 +112,24 @@ TEST(CmdReader, RefusesWhatCannotWork) {
   });
 }
 
+TEST(CmdReaderWedge, AReaderThatTypesIsWatchedByTheNameOfTheBoardFile) {
+  const test::ScratchFolder folder;
+  const std::string board =
+      folder.write("robot.toml",
+                   "[board]\nname = \"robot\"\n[[wedge]]\nname = \"gate\"\npath = \"sim\"\nepc_digits = 24\n"
+                   "[[wedge]]\nname = \"desk\"\nvendor = 0x1209\nproduct = 0xffff\n");
+  const ProgramResult result =
+      run_program({"reader", "watch", "--wedge", "gate", "--board", board, "--for", "3200ms", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const Json end = last_event(result.out, "end");
+  EXPECT_EQ(end["reads"], 6) << result.out;  // one every half second
+  EXPECT_EQ(end["tags"], 6);
+  EXPECT_EQ(end["ports"][0]["name"], "typed");
+  expect_refusals({{{"reader", "watch", "--wedge", "door", "--board", board}, 2, "gate, desk"},
+                   {{"reader", "watch", "--wedge", "gate", "--board", board}, 2, "--for"},
+                   {{"hid", "watch", "door", "--board", board}, 2, "gate, desk"}});
+}
+
 // Against `forager emulate reader` over real sockets.
 class CmdReaderOverSockets : public SocketTest {
  protected:
