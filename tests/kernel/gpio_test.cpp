@@ -184,27 +184,34 @@ TEST(GpioInVirtualTime, EdgesAreStampedToTheNanosecondHoweverLongNobodyLooks) {
   }
 }
 
-// A millisecond of the contract lasts two ticks.
-constexpr int kSlower = 20;
+// When the pin was driven, and when the test says that was.
+struct Driven {
+  Instant at;
+  Instant told;
+};
 
-class Slowed final : public hal::EdgeIn {
+// The kernel's stamp of an edge lies between the moment the pin was driven and the next such moment: the
+// edge is given the time that belongs to it.
+class ToldEdges final : public hal::EdgeIn {
  public:
-  Slowed(std::unique_ptr<hal::EdgeIn> in, Instant origin) : in_(std::move(in)), origin_(origin) {}
+  ToldEdges(std::unique_ptr<hal::EdgeIn> in, const std::vector<Driven>& driven)
+      : in_(std::move(in)), driven_(&driven) {}
 
  private:
   hal::Result<bool> do_active() override { return in_->active(); }
   hal::Result<std::size_t> do_edges(std::span<Edge> into) override {
-    sleep_until(now() + 2 * kTick);  // what was driven has been stamped
     const auto count = in_->edges(into);
-    // Readings of the clock by whoever runs at that tick, too, cost some hundred nanoseconds.
-    for (std::size_t i = 0; i < count.value_or(0); ++i)
-      into[i].at = Instant(std::chrono::round<std::chrono::microseconds>((into[i].at - origin_) / kSlower));
+    for (Edge& edge : into.first(count.value_or(0))) {
+      const auto next = std::find_if(driven_->begin(), driven_->end(),
+                                     [&](const Driven& driven) { return driven.at > edge.at; });
+      edge.at = next == driven_->begin() ? Instant::max() : std::prev(next)->told;
+    }
     return count;
   }
   std::string_view do_name() const override { return in_->name(); }
 
   std::unique_ptr<hal::EdgeIn> in_;
-  Instant origin_;
+  const std::vector<Driven>* driven_;
 };
 
 class SimRig final : public hal::contract::DigitalRig {
@@ -214,7 +221,9 @@ class SimRig final : public hal::contract::DigitalRig {
   bool out_is_active() override { return !sim_.level(0); }
   hal::EdgeIn& in() override { return *in_; }
   void drive_in(bool active, Instant at) override {
-    drive_for_stamp(sim_, 1, !active, origin_ + kSlower * at.time_since_epoch());
+    driven_.push_back({now(), at});
+    sim_.drive(1, !active);
+    sleep_until(now() + 2 * kTick);
   }
   // What was open on a chip that went stays dead: a program opens it again, and so does this.
   void unplug(bool out) override {
@@ -231,12 +240,10 @@ class SimRig final : public hal::contract::DigitalRig {
     sim_.drive(1, true);  // inactive
     auto in = hal::open_gpio_edges(
         {.chip = "bench", .line = "IN", .active_low = true, .edges = hal::GpioEdges::both});
-    let_others_finish();
-    origin_ = next_tick();
-    in_ = std::make_unique<Slowed>(std::move(in).value(), origin_);
+    in_ = std::make_unique<ToldEdges>(std::move(in).value(), driven_);
   }
   GpioSim sim_{"bench", {{"OUT"}, {"IN"}}};
-  Instant origin_{};
+  std::vector<Driven> driven_;
   std::unique_ptr<hal::DigitalOut> out_;
   std::unique_ptr<hal::EdgeIn> in_;
 };
@@ -245,7 +252,7 @@ class SimRig final : public hal::contract::DigitalRig {
 }  // namespace forager::kernel
 
 namespace forager::hal::contract {
-INSTANTIATE_TEST_SUITE_P(InVirtualTime, DigitalContract,
+INSTANTIATE_TEST_SUITE_P(Kernel, DigitalContract,
                          testing::Values(DigitalRigMaker{"GpioSim",
                                                          [] { return std::make_unique<kernel::SimRig>(); }}),
                          [](const auto& rig) { return rig.param.name; });

@@ -57,6 +57,21 @@ class BridgeInVirtualTime : public testing::Test {
         return "/dev/" + name;
     return {};
   }
+  static void its_pins_and_its_bus_are_those_of_the_kernel() {
+    const auto lines = hal::list_gpio().value();
+    EXPECT_EQ(4, std::count_if(lines.begin(), lines.end(),
+                               [](const hal::GpioLineFacts& line) { return line.label == "mcp2221_gpio"; }));
+    const auto bus = hal::open_i2c_dev({.device = adapter(), .timeout = 2s});
+    ASSERT_TRUE(bus) << describe(bus.error());
+    ASSERT_TRUE((*bus)->write(0x41, std::array{std::byte{0x00}, std::byte{0x31}}));
+    ASSERT_TRUE((*bus)->write(0x41, std::array{std::byte{0x06}, std::byte{0x12}, std::byte{0x03}}));
+    std::array<std::byte, 2> two{};
+    ASSERT_TRUE((*bus)->write_read(0x41, std::array{std::byte{0x06}}, two));
+    EXPECT_EQ((std::array{std::byte{0x12}, std::byte{0x03}}), two);
+    const auto absent = (*bus)->read(0x29, two);
+    ASSERT_FALSE(absent);
+    EXPECT_EQ(ErrorCode::no_ack, absent.error().code) << describe(absent.error());
+  }
   mocks::SimI2cBus wires_{"wires"};
   mocks::SimPca9685 servo_chip_;
   mocks::SimMcp2221 chip_{wires_};
@@ -80,30 +95,10 @@ TEST_F(BridgeInVirtualTime, TheKernelsDriverKeepsItAndThatIsWhatIsSaid) {
     EXPECT_EQ(boards::CheckState::failed, found.state);
     EXPECT_THAT(found.text, HasSubstr("hid-mcp2221 holds the USB bridge"));
     EXPECT_THAT(found.mend, HasSubstr("blacklist hid_mcp2221"));
+    its_pins_and_its_bus_are_those_of_the_kernel();
   }
   EXPECT_TRUE(eventually([&] { return opens(); })) << "as the mend says";
   EXPECT_EQ(boards::CheckState::ok, diagnosis().state) << diagnosis().text;
-}
-
-TEST_F(BridgeInVirtualTime, ThenItsPinsAndItsBusAreThoseOfTheKernel) {
-  ASSERT_TRUE(eventually([&] { return opens(); }));
-  const KernelModule driver("hid-mcp2221.ko");
-  ASSERT_TRUE(eventually([] { return !adapter().empty(); }));
-  const auto lines = hal::list_gpio().value();
-  EXPECT_EQ(4, std::count_if(lines.begin(), lines.end(),
-                             [](const hal::GpioLineFacts& line) { return line.label == "mcp2221_gpio"; }));
-  {
-    const auto bus = hal::open_i2c_dev({.device = adapter(), .timeout = 2s});
-    ASSERT_TRUE(bus) << describe(bus.error());
-    ASSERT_TRUE((*bus)->write(0x41, std::array{std::byte{0x00}, std::byte{0x31}}));
-    ASSERT_TRUE((*bus)->write(0x41, std::array{std::byte{0x06}, std::byte{0x12}, std::byte{0x03}}));
-    std::array<std::byte, 2> two{};
-    ASSERT_TRUE((*bus)->write_read(0x41, std::array{std::byte{0x06}}, two));
-    EXPECT_EQ((std::array{std::byte{0x12}, std::byte{0x03}}), two);
-    const auto absent = (*bus)->read(0x29, two);
-    ASSERT_FALSE(absent);
-    EXPECT_EQ(ErrorCode::no_ack, absent.error().code) << describe(absent.error());
-  }
   const auto held = plug_.lock();
   EXPECT_THAT(chip_.violations(), testing::IsEmpty());
 }

@@ -71,11 +71,11 @@ void HidPlug::create() {
   send(uhid_, event);
 }
 
-// A device may have something to say without being asked, so it is looked at every millisecond.
+// A device may have something to say without being asked, so it is looked at every now and then.
 void HidPlug::serve() {
   pollfd kernel{uhid_, POLLIN, 0};
   while (!stop_) {
-    const int waiting = ::poll(&kernel, 1, 1);
+    const int waiting = ::poll(&kernel, 1, 5);
     const auto held = lock();
     if (waiting > 0) take_event();
     send_inputs();

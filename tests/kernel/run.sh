@@ -13,7 +13,7 @@ kernel=${1:?tests/kernel/run.sh: needs the folder of a kernel and the program}
 program=$(realpath "${2:?tests/kernel/run.sh: needs the program of the tests}")
 only=${3:-}
 filter=${4:-}
-seconds=180 # a guest that hangs is ended
+seconds=600 # a guest that hangs is ended
 megabytes=384
 
 work=$(mktemp -d "${TMPDIR:-/tmp}/forager-kernel.XXXXXX")
