@@ -35,6 +35,10 @@ class CmdGpioOnPins : public testing::Test {
   void SetUp() override {
     if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
   }
+  // With a guard that does not take a program for hung because the machine is busy.
+  test::ScratchFolder folder_;
+  std::string patient_ =
+      folder_.write("patient.toml", "[board]\nname = \"patient\"\nguard_timeout_ms = 10000\n");
 };
 
 TEST_F(CmdGpioOnPins, ListSaysWhoHoldsALineAndWhatTheBoardCallsIt) {
@@ -84,8 +88,9 @@ TEST_F(CmdGpioOnPins, SetHoldsForItsTimeAndIsInactiveAfterwards) {
       run_program({"gpio", "set", "sim/OUT1", "on", "--hold", "2s", "--arm", "--board", "sim"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, "sim/OUT1: active for 2 s\nsim/OUT1: inactive\n");
-  EXPECT_EQ(on_pins({"gpio", "set", "gpiochip0/17", "on", "--hold", "20ms", "--arm"}).out,
-            "gpiochip0/17: active for 0.02 s\ngpiochip0/17: inactive\n");
+  EXPECT_EQ(
+      on_pins({"gpio", "set", "gpiochip0/17", "on", "--hold", "20ms", "--arm", "--board", patient_}).out,
+      "gpiochip0/17: active for 0.02 s\ngpiochip0/17: inactive\n");
 }
 
 TEST(CmdGpio, NothingIsDrivenWithoutArmOrWithAMistake) {
@@ -106,7 +111,8 @@ TEST(CmdGpio, NothingIsDrivenWithoutArmOrWithAMistake) {
 
 TEST_F(CmdGpioOnPins, CtrlCLeavesTheLineInactive) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    Program program({"gpio", "set", "gpiochip0/17", "on", "--hold", "60s", "--arm"}, FakeMachine{}.options());
+    Program program({"gpio", "set", "gpiochip0/17", "on", "--hold", "60s", "--arm", "--board", patient_},
+                    FakeMachine{}.options());
     ASSERT_TRUE(program.wait_for_out("active for 60 s", 10s));
     program.send_signal(signal);
     const ProgramResult result = program.finish();
