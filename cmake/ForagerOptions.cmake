@@ -21,7 +21,8 @@ endif()
 # gives the same bytes at every optimisation level and on every machine.
 add_library(forager_flags INTERFACE)
 target_compile_options(forager_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-  -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off)
+  -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wredundant-decls -Wzero-as-null-pointer-constant
+  $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier> -ffp-contract=off)
 if(FORAGER_WERROR)
   target_compile_options(forager_flags INTERFACE -Werror)
 endif()
