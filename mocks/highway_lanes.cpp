@@ -2,13 +2,12 @@
 // processor family and picked at run time. Every lane computes by itself and in the same order, so where a
 // point lies in the arrays and how wide the vectors are makes no difference; only whether products and sums
 // are fused does (SSE: no; AVX2, AVX-512, NEON: yes).
-// Vectors that are members of a class have a length that the compiler knows: not those of ARM's SVE.
+// Vectors of unknown length cannot be members of a class: not those of ARM's SVE.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mocks/highway_lanes.cpp"
 #include <hwy/foreach_target.h>
-// Highway wants to be included after foreach_target.h.
-#include <hwy/highway.h>
+#include <hwy/highway.h>  // wants to come after foreach_target.h
 
 #include "mocks/detection_lanes.hpp"
 #include "mocks/detection_scalar.hpp"

@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <ctime>
 #include <map>
 #include <string>
 #include <utility>
@@ -151,26 +150,6 @@ class FakeGpio {
     bool is_chip = false;
   };
 
-  static void drop_oldest(int event_pipe) {
-    const int reading =
-        ::open(("/proc/self/fd/" + std::to_string(event_pipe)).c_str(), O_RDONLY | O_NONBLOCK);
-    gpio_v2_line_event oldest{};
-    static_cast<void>(!::read(reading, &oldest, sizeof oldest));
-    ::close(reading);
-  }
-  static std::uint64_t wall_minus_monotonic() {
-    timespec wall{};
-    timespec monotonic{};
-    clock_gettime(CLOCK_REALTIME, &wall);
-    clock_gettime(CLOCK_MONOTONIC, &monotonic);
-    return static_cast<std::uint64_t>((wall.tv_sec - monotonic.tv_sec) * 1'000'000'000 + wall.tv_nsec -
-                                      monotonic.tv_nsec);
-  }
-  static Instant monotonic_now() {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return Instant(std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec));
-  }
   static int spare_descriptor() { return ::dup(STDERR_FILENO); }
   template <std::size_t Size>
   static void copy(char (&into)[Size], const std::string& text) {
@@ -240,9 +219,6 @@ class FakeGpio {
     request.fd = ends[0];
     handles_[request.fd] = {number, {request.lineoffset}, ends[1], false};
     return 0;
-  }
-  static bool is_active(const GpioLine& line) {
-    return line.level != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
   }
   int line_ioctl(Chip& chip, const Handle& handle, unsigned long request, void* argument) {
     auto* v1 = static_cast<gpiohandle_data*>(argument);

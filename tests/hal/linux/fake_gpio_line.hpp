@@ -1,11 +1,17 @@
 #pragma once
 
+#include <fcntl.h>
 #include <linux/gpio.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
+
+#include "hal/time.hpp"
 
 namespace forager::hal::fake {
 
@@ -36,5 +42,31 @@ inline constexpr std::array kFlags{
     FlagPair{GPIO_V2_LINE_FLAG_BIAS_PULL_UP, GPIOHANDLE_REQUEST_BIAS_PULL_UP, GPIOLINE_FLAG_BIAS_PULL_UP},
     FlagPair{GPIO_V2_LINE_FLAG_BIAS_PULL_DOWN, GPIOHANDLE_REQUEST_BIAS_PULL_DOWN, 0},
     FlagPair{GPIO_V2_LINE_FLAG_BIAS_DISABLED, GPIOHANDLE_REQUEST_BIAS_DISABLE, 0}};
+
+inline void drop_oldest(int event_pipe) {
+  const int reading = ::open(("/proc/self/fd/" + std::to_string(event_pipe)).c_str(), O_RDONLY | O_NONBLOCK);
+  gpio_v2_line_event oldest{};
+  static_cast<void>(!::read(reading, &oldest, sizeof oldest));
+  ::close(reading);
+}
+
+inline std::uint64_t wall_minus_monotonic() {
+  timespec wall{};
+  timespec monotonic{};
+  clock_gettime(CLOCK_REALTIME, &wall);
+  clock_gettime(CLOCK_MONOTONIC, &monotonic);
+  return static_cast<std::uint64_t>((wall.tv_sec - monotonic.tv_sec) * 1'000'000'000 + wall.tv_nsec -
+                                    monotonic.tv_nsec);
+}
+
+inline Instant monotonic_now() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return Instant(std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec));
+}
+
+inline bool is_active(const GpioLine& line) {
+  return line.level != ((line.flags & GPIOLINE_FLAG_ACTIVE_LOW) != 0);
+}
 
 }  // namespace forager::hal::fake
