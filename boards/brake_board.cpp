@@ -99,12 +99,13 @@ void read_modbus(ConfigReader& table, BrakeLine& line) {
     table.complain("locked_value", "is the same as open_value", "See the actuator's manual.");
   if (actuator.target.table == servo::RegisterTable::input)
     table.complain("target", "is an input register, which can only be read", "See the actuator's manual.");
-  for (const char* end : {"open_value", "locked_value"})
-    if (const auto fits =
-            servo::encode(actuator.target, end == std::string_view("open_value") ? actuator.open_value
-                                                                                 : actuator.locked_value);
-        !fits)
-      table.complain(end, fits.error().detail, "Correct it, or type and scale of target.");
+  constexpr const char* kCorrect = "Correct it, or type and scale of target.";
+  const auto open = servo::encode(actuator.target, actuator.open_value);
+  if (!open) table.complain("open_value", open.error().detail, kCorrect);
+  const auto locked = servo::encode(actuator.target, actuator.locked_value);
+  if (!locked) table.complain("locked_value", locked.error().detail, kCorrect);
+  if (open && locked && open->words == locked->words && actuator.open_value != actuator.locked_value)
+    table.complain("locked_value", "is the same number as open_value in the target's register", kCorrect);
 }
 
 BrakeBackend backend_of(ConfigReader& table) {
@@ -148,11 +149,15 @@ void read_line(ConfigReader table, BrakeLine& line) {
   read_pulses(table, line.pulses);
 }
 
+bool overlap(const servo::ModbusRegister& a, const servo::ModbusRegister& b) {
+  return a.address < b.address + servo::words_of(b.type) && b.address < a.address + servo::words_of(a.type);
+}
+
 bool same_place(const BrakeLine& a, const BrakeLine& b) {
   if (a.backend != b.backend || a.backend == BrakeBackend::sim) return false;
   if (a.backend == BrakeBackend::modbus)
     return a.bus == b.bus && a.actuator.unit == b.actuator.unit &&
-           a.actuator.target.address == b.actuator.target.address;
+           overlap(a.actuator.target, b.actuator.target);
   return a.chip == b.chip && a.bus == b.bus && a.line == b.line && a.channel == b.channel &&
          (a.backend != BrakeBackend::pca9685 || a.address == b.address);
 }

@@ -1,7 +1,8 @@
-// Readers that type as keyboards: whether they are plugged in, and may be opened. Not opened: that would take
-// their keys from whoever has them.
+// Readers that type as keyboards: whether they are plugged in, and may be opened. No keys are taken from
+// whoever has them.
 #include <fcntl.h>
-#include <cerrno>
+
+#include <string>
 
 #include "boards/doctor.hpp"
 #include "boards/wedge_bench.hpp"
@@ -23,7 +24,13 @@ void check_wedge(const Doctor& doctor, const BenchWedge& wedge) {
     return doctor.fail(kArea, name, describe(wedge.device) + ": no such device is plugged in",
                        "Check the cable; see what there is: forager hid list");
   const std::string& path = devices->front().path;
-  const int fd = path.empty() ? -EACCES : doctor.kernel.open(path, O_RDWR);
+  if (devices->size() > 1)
+    return doctor.fail(kArea, name, describe(wedge.device) + ": several such devices are plugged in",
+                       "Say which in the board file: serial, or path; see forager hid list");
+  if (path.empty())
+    return doctor.fail(kArea, name, describe(devices->front()) + " has no hidraw node",
+                       "A driver of the kernel holds it; see forager hid list");
+  const int fd = doctor.kernel.open(path, O_RDWR);
   if (fd >= 0) doctor.kernel.close(fd);
   if (fd < 0 && hal::code_of_device_errno(-fd) == hal::ErrorCode::permission)
     return doctor.fail(kArea, name, path + ": the operating system forbids it [Permission denied]",

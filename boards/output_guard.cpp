@@ -16,6 +16,7 @@ class Unguarded final : public OutputGuard {
  public:
   hal::Result<> arm() override { return {}; }
   hal::Result<> feed() override { return {}; }
+  void hand_over() override {}
   [[nodiscard]] hal::Duration timeout() const override { return {}; }
 };
 
@@ -25,6 +26,7 @@ class Guarded final : public OutputGuard {
       : process_(std::move(process)), timeout_(timeout) {}
   hal::Result<> arm() override { return process_->arm(); }
   hal::Result<> feed() override { return process_->feed(); }
+  void hand_over() override { process_->hand_over(); }
   [[nodiscard]] hal::Duration timeout() const override { return timeout_; }
 
  private:
@@ -38,12 +40,16 @@ void say(const std::string& text) {
   static_cast<void>(!::write(STDERR_FILENO, line.data(), line.size()));
 }
 
+std::string what_happened(hal::GuardCause cause, hal::Duration timeout) {
+  if (cause == hal::GuardCause::died) return " died";
+  if (cause == hal::GuardCause::asked) return " could not end in order";
+  return fmt::format(" was silent for {} ms, and was killed", timeout / std::chrono::milliseconds(1));
+}
+
 void act(const Board& board, const OutputScope& scope, const std::string& program, hal::Duration timeout,
          hal::GuardCause cause) {
   const auto outcome = make_outputs_safe(board, scope, *make_real_clock(1.0));
-  say(cause == hal::GuardCause::died ? program + " died"
-                                     : fmt::format("{} was silent for {} ms, and was killed", program,
-                                                   timeout / std::chrono::milliseconds(1)));
+  say(program + what_happened(cause, timeout));
   for (const SafeOutput& output : outcome)
     say(output.output + ": " + (output.error ? "NOT SAFE: " + hal::describe(*output.error) : "safe"));
 }

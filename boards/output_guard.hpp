@@ -27,6 +27,9 @@ class OutputGuard {
   [[nodiscard]] virtual hal::Result<> arm() = 0;
   // To be called at every turn of the loop. Errors: disconnected (the guard is gone: stop).
   [[nodiscard]] virtual hal::Result<> feed() = 0;
+  // The program could not make its output safe: the guard tries for a second more, and stderr says what came
+  // of it. To be called when the program has closed the output.
+  virtual void hand_over() = 0;
   // Zero: nothing real is moved, nobody watches.
   [[nodiscard]] virtual hal::Duration timeout() const = 0;
 };

@@ -46,7 +46,7 @@ struct OverheadContest {
 struct OverheadUsbPlace {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  std::uint32_t baud = 115200;
+  std::uint32_t baud = 115200;  // at least 57600: 4 KiB in less than the second a transfer may take
 };
 // Errors: not_present, invalid_argument (several fit), unsupported (no such adapter, or built without
 // libusb), io.

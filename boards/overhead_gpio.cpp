@@ -16,7 +16,7 @@ hal::Result<OverheadContest::Side> open_ours(const hal::GpioLineConfig& line) {
   if (!opened) return hal::fail(std::move(opened).error());
   const std::shared_ptr<hal::DigitalOut> out = *std::move(opened);
   const auto run = [out](std::uint64_t calls) -> hal::Result<std::uint64_t> {
-    for (std::uint64_t i = 0; i < calls; ++i) FORAGER_TRY(out->set((i & 1U) != 0));
+    for (std::uint64_t i = 0; i < calls; ++i) FORAGER_TRY(out->set((i & 1U) == 0));
     return calls;
   };
   return OverheadContest::Side(run);

@@ -190,10 +190,11 @@ hal::Result<std::vector<OverheadContest>> overhead_usb(const OverheadUsbPlace& p
                            .open_ours = [open, adapter = *adapter] { return open(adapter); },
                            .open_bare = [bare] { return hal::open_bare_usb(bare); }};
   };
-  std::vector all{contest("USB bulk transfer", "UsbDevice::bulk_out", open_bulk, adapter->out),
-                  contest("USB serial, to the device", "UsbSerial::write", open_out, adapter->out),
-                  contest("USB serial, from the device", "UsbSerial::read", open_in, adapter->in)};
-  all.back().may_be_silent = true;
+  // The serial port first: it sets the line's rate, which the others then find.
+  std::vector all{contest("USB serial, to the device", "UsbSerial::write", open_out, adapter->out),
+                  contest("USB serial, from the device", "UsbSerial::read", open_in, adapter->in),
+                  contest("USB bulk transfer", "UsbDevice::bulk_out", open_bulk, adapter->out)};
+  all[1].may_be_silent = true;
   return all;
 }
 

@@ -53,6 +53,7 @@ hal::Result<std::unique_ptr<WedgeBench>> open_wedge_bench(const BenchWedge& wedg
 reader::HidWedgeConfig wedge_config(const BenchWedge& wedge) {
   reader::HidWedgeConfig config{.device = wedge.device, .epc_digits = wedge.epc_digits, .pause = wedge.pause};
   if (config.device.path == "sim") config.device.path.clear();
+  config.device = reader::keyboard(config.device);
   return config;
 }
 

@@ -10,18 +10,18 @@ constexpr std::uint16_t kGenericDesktop = 0x01;  // HID Usage Tables, section 4
 constexpr std::uint16_t kKeyboard = 0x06;
 constexpr std::size_t kMostReports = 256;  // of one update: the kernel keeps 64
 
-hal::HidMatch keyboard(hal::HidMatch match) {
-  if (!match.usage_page) match.usage_page = kGenericDesktop;
-  if (!match.usage) match.usage = kKeyboard;
-  return match;
-}
-
 // What a person must see to; everything else may heal by itself.
 bool final(hal::ErrorCode code) {
   return code == hal::ErrorCode::unsupported || code == hal::ErrorCode::invalid_argument;
 }
 
 }  // namespace
+
+hal::HidMatch keyboard(hal::HidMatch match) {
+  if (!match.usage_page) match.usage_page = kGenericDesktop;
+  if (!match.usage) match.usage = kKeyboard;
+  return match;
+}
 
 HidWedge::HidWedge(hal::Hid& hid, const HidWedgeConfig& config)
     : hid_(&hid), config_(config), text_(config.epc_digits), backoff_(config.retry_first, config.retry_cap) {

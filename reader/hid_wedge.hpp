@@ -22,6 +22,9 @@ struct HidWedgeConfig {
   hal::Duration retry_cap = std::chrono::seconds(5);
 };
 
+// The keyboards among what fits (HID Usage Tables, section 4), unless it asks for another usage.
+[[nodiscard]] hal::HidMatch keyboard(hal::HidMatch match);
+
 // A reader that types EPCs as a keyboard (the USB HID service of AdvanReader-70 and -160). It tells neither
 // port nor RSSI nor time, it cannot be asked or told anything, and its silence has no reason: link() is open
 // as long as it is plugged in. Taken exclusively, so that its keys end here and nowhere else; unplugged and

@@ -22,8 +22,13 @@ hal::Result<ModbusBrake> ModbusBrake::create(hal::Modbus& bus, const ModbusBrake
                      "the target is an input register, which can only be read");
   FORAGER_TRY(check(config.target));
   if (config.measured) FORAGER_TRY(check(*config.measured));
-  for (const double value : {config.open_value, config.locked_value})
-    if (const auto fits = encode(config.target, value); !fits) return hal::fail(fits.error());
+  const auto open = encode(config.target, config.open_value);
+  if (!open) return hal::fail(open.error());
+  const auto locked = encode(config.target, config.locked_value);
+  if (!locked) return hal::fail(locked.error());
+  if (open->words == locked->words)
+    return hal::fail(hal::ErrorCode::invalid_argument, "brake on " + std::string(bus.name()), "create",
+                     "open and locked are the same number in the target's register: its scale is too coarse");
   return ModbusBrake(bus, config);
 }
 

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
+#include "boards/bench_board.hpp"
+#include "boards/output_guard.hpp"
 #include "tools/bench_session.hpp"
 #include "tools/cli_checks.hpp"
 #include "tools/cli_style.hpp"
@@ -34,24 +38,29 @@ class Measurements {
     rows_.push_back({.name = std::move(name), .unit = {}, .ours = {}, .bare = {}, .skipped = std::move(why)});
   }
   // `asked`: a person named the device, so that it fails is an error.
-  void take(const std::string& name, const Contests& contests, bool asked) {
+  // `watched`: asked after every pair; false ends it.
+  void take(
+      const std::string& name, const Contests& contests, bool asked,
+      const std::function<bool()>& watched = [] { return true; }) {
     if (!contests) return fail(name, contests.error(), asked);
     for (const boards::OverheadContest& contest : *contests) {
       if (StopSignal::raised()) return;
-      take(contest, asked);
+      take(contest, asked, watched);
     }
   }
   int print() const;
 
- private:
   void fail(const std::string& name, const hal::Error& error, bool asked) {
     skip(name, describe(error));
     if (!asked) return;
     const int code = complain(error);
     if (exit_code_ == kExitDone) exit_code_ = code;
   }
-  void take(const boards::OverheadContest& contest, bool asked) {
-    auto row = measure_overhead(contest, {.seconds = command_->seconds, .stop = &StopSignal::raised});
+
+ private:
+  void take(const boards::OverheadContest& contest, bool asked, const std::function<bool()>& watched) {
+    auto row = measure_overhead(contest, {.seconds = command_->seconds,
+                                          .stop = [&watched] { return StopSignal::raised() || !watched(); }});
     if (row) return rows_.push_back(*std::move(row));
     const bool silent = contest.may_be_silent && row.error().code == hal::ErrorCode::timeout;
     fail(contest.name, row.error(), asked && !silent);
@@ -61,6 +70,21 @@ class Measurements {
   std::vector<OverheadRow> rows_;
   int exit_code_ = kExitDone;
 };
+
+// The line is made inactive by another process when this one is killed. A loop that is late harms nothing
+// here.
+void measure_gpio(const std::string& line, Measurements& measured) {
+  constexpr const char* kName = "GPIO set";
+  boards::Board board;
+  board.guard_timeout = std::chrono::seconds(10);
+  const auto place = boards::find_line({}, line);
+  if (!place) return measured.fail(kName, place.error(), true);
+  const auto guard = boards::OutputGuard::start(board, {.line = *place}, "forager bench overhead");
+  if (!guard) return measured.fail(kName, guard.error(), true);
+  if (const auto armed = (*guard)->arm(); !armed) return measured.fail(kName, armed.error(), true);
+  measured.take(kName, alone(boards::overhead_gpio(line)), true,
+                [&guard] { return (*guard)->feed().has_value(); });
+}
 
 int Measurements::print() const {
   std::string text;
@@ -141,7 +165,7 @@ int run_bench_overhead(const OverheadCommand& command) {
   if (command.gpio.empty())
     measured.skip("GPIO set", "needs a free line: --gpio CHIP/LINE --arm");
   else
-    measured.take("GPIO set", alone(boards::overhead_gpio(command.gpio)), true);
+    measure_gpio(command.gpio, measured);
   if (command.i2c.empty())
     measured.skip("I2C transfer", "needs a chip that may be read: --i2c BUS@ADDRESS");
   else
@@ -164,7 +188,7 @@ void add_overhead_command(CLI::App& bench, int& exit_code) {
   overhead->add_option("--usb", command->usb, "CDC-ACM or FTDI adapter to send bytes to: VID:PID");
   overhead->add_option("--baud", command->baud, "Of that adapter's line")
       ->capture_default_str()
-      ->check(WholeNumber(300, 12000000));
+      ->check(WholeNumber(57600, 12000000));
   overhead->add_option("--seconds", command->seconds, "Of each measurement")
       ->capture_default_str()
       ->check(NumberBetween(0.01, 3600.0));

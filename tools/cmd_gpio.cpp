@@ -108,9 +108,12 @@ int set_line(const GpioCommand& command, const BenchLine& line, BenchPlace& plac
     guarded = (*guard)->feed();
     return guarded.has_value();
   });
-  if (!line.keep_at_end)
-    if (const auto safe = (*out)->set(false); !safe) return complain(safe.error());
+  const auto safe = line.keep_at_end ? hal::Result<>{} : (*out)->set(false);
   out->reset();
+  if (!safe) {
+    (*guard)->hand_over();
+    return complain(safe.error());
+  }
   tell_level(output, line.name, line.keep_at_end && active);
   if (!guarded) return complain(guarded.error());
   return end == BenchEnd::signalled ? complain_signalled(line.name) : kExitDone;

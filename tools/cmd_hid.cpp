@@ -125,6 +125,9 @@ int watch_device(const PlugCommand& command, PlugSession& session, hal::Hid& hid
     if (!board) return complain(board.error());
     const auto wedge = boards::find_wedge(board->bench, command.device);
     if (!wedge) return complain(wedge.error());
+    if (wedge->device.path == "sim")
+      return complain_usage(fmt::format("{} is emulated: forager reader watch --wedge {} hears it",
+                                        command.device, command.device));
     match = boards::wedge_config(*wedge).device;
   } else if (const auto id = usb_id_from(command.device)) {
     match.vendor = id->vendor;

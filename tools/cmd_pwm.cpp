@@ -102,6 +102,10 @@ class PulseSession {
   }
   int finish(BenchEnd end) {
     const auto released = pwm_->channel().release();
+    if (!released) {
+      pwm_.reset();
+      guard_->hand_over();
+    }
     if (!failed_) return complain(failed_.error());
     if (!released) return complain(released.error());
     output_->record({{"event", "end"}, {"output", name_}, {"last_pulse_us", told_ ? in_us(*told_) : 0.0}});

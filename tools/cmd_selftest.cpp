@@ -57,19 +57,27 @@ int test_pins(const SelftestCommand& command, BenchPlace& place, BenchOutput& ou
   const auto in_line = boards::find_line(place.board.bench, command.in);
   if (!in_line) return complain(in_line.error());
   BenchLoop loop(place.machine->clock(), kTick);
-  const auto out = place.machine->open_out(*out_line);
+  const auto guard = guard_output(place, {.line = *out_line}, "forager selftest");
+  if (!guard) return complain(guard.error());
+  auto out = place.machine->open_out(*out_line);
   if (!out) return complain(out.error());
   const auto in = place.machine->open_edges(*in_line);
   if (!in) return complain(in.error());
+  if (const auto armed = (*guard)->arm(); !armed) return complain(armed.error());
   const std::string where = fmt::format("{} to {}", command.out, command.in);
   boards::PinLoopback test(**out, **in, {.toggles = command.count});
   hal::Result<> failed;
   const BenchEnd end = loop.run(kLongest, [&](hal::Instant now) {
+    if (failed = (*guard)->feed(); !failed) return false;
     const auto going = test.update(now);
     if (!going) failed = hal::fail(going.error());
     return going && *going;
   });
+  const auto safe = (*out)->set(false);
+  out->reset();
+  if (!safe) (*guard)->hand_over();
   if (!failed) return complain(failed.error());
+  if (!safe) return complain(safe.error());
   if (end == BenchEnd::signalled) return complain_signalled(where);
   report(command, where, test.result(), output);
   return test.result().fault.empty() ? kExitDone : complain_fault(where, test.result().fault);

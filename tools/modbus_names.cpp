@@ -37,7 +37,7 @@ struct NamesCommand {
 };
 
 std::string with_unit(double value, const ModbusRegister& quantity) {
-  return fmt::format("{:.6g}{}{}", value, quantity.unit.empty() ? "" : " ", quantity.unit);
+  return fmt::format("{:.10g}{}{}", value, quantity.unit.empty() ? "" : " ", quantity.unit);
 }
 
 std::string place_of(const ModbusRegister& quantity) {

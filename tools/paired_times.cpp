@@ -36,8 +36,8 @@ hal::Result<Batch> time_batch(const Side& side, std::uint64_t calls) {
   return Batch{wall.count() / things, cpu_ns / things};
 }
 
-// An even number, so that what is toggled ends as it began. By the fastest call seen: others that want the
-// processor make some wait a thousand times as long.
+// An even number, so that what is toggled, active first, ends inactive. By the fastest call seen: others that
+// want the processor make some wait a thousand times as long.
 hal::Result<std::uint64_t> calls_for(const boards::OverheadContest& contest) {
   constexpr std::uint64_t kMost = 1U << 24U;
   constexpr int kPatience = 20;  // batches

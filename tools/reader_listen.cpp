@@ -10,6 +10,7 @@
 #include "boards/run_journal.hpp"
 #include "boards/wedge_bench.hpp"
 #include "reader/advannet_listener.hpp"
+#include "reader/advannet_wire.hpp"
 #include "tools/bench_session.hpp"
 #include "tools/cli_style.hpp"
 #include "tools/reader_output.hpp"
@@ -66,8 +67,11 @@ class ReaderListen {
     });
     const ReaderMoment last = moment(true);
     output_.end(last);
-    if (!reader_.link().reading() && tally_.total().reads == 0) {
-      fmt::print(stderr, "forager: {}\n", one_line(last.why));
+    // A reader without tags is silent for a keep-alive's period, and that is no failure.
+    const reader::LinkStatus& link = reader_.link();
+    const bool mute = !link.speaks && last.now - link.since > reader::advannet::kKeepAlivePeriod;
+    if (link.phase != reader::LinkPhase::open || mute) {
+      fmt::print(stderr, "forager: {}\n", one_line(last.why.empty() ? link.reason : last.why));
       return kExitFailure;
     }
     if (tally_.total().tags >= command_.least_tags) return kExitDone;

@@ -25,8 +25,11 @@ std::shared_ptr<gpiod_line_request> request(const std::string& path, unsigned li
   const int error = errno;
   if (chip != nullptr) gpiod_chip_close(chip);
   errno = error;
-  return {made, [](gpiod_line_request* held) {
-            if (held != nullptr) gpiod_line_request_release(held);
+  // Left inactive, whatever was set last.
+  return {made, [line](gpiod_line_request* held) {
+            if (held == nullptr) return;
+            gpiod_line_request_set_value(held, line, GPIOD_LINE_VALUE_INACTIVE);
+            gpiod_line_request_release(held);
           }};
 }
 
@@ -38,7 +41,7 @@ Result<CallLoop> open_bare_gpio(const std::string& chip, unsigned line) {
   if (!held) return gpio_failure(name, "open", errno);
   const auto run = [held, line, name](std::uint64_t calls) -> Result<std::uint64_t> {
     for (std::uint64_t i = 0; i < calls; ++i) {
-      const auto value = (i & 1U) != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
+      const auto value = (i & 1U) == 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
       if (gpiod_line_request_set_value(held.get(), line, value) != 0) return gpio_failure(name, "set", errno);
     }
     return calls;

@@ -24,6 +24,7 @@ using namespace std::chrono_literals;
 constexpr char kReady = 'r';
 constexpr char kArm = 'a';
 constexpr char kBye = 'b';
+constexpr char kHandOver = 'h';
 constexpr Duration kDying = 200ms;   // for a killed process to let go of what it holds
 constexpr Duration kSettling = 10s;  // of a guard on a machine that is out of breath
 constexpr int kPriority = 60;        // above the threads that make pulses
@@ -65,6 +66,7 @@ class Watch {
       if (got < 0 && errno == EINTR) continue;
       if (got <= 0) return armed_ ? std::optional(GuardCause::died) : std::nullopt;
       if (word == kBye) return std::nullopt;
+      if (word == kHandOver) return armed_ ? std::optional(GuardCause::asked) : std::nullopt;
       armed_ = armed_ || word == kArm;
       heard = monotonic();
     }
@@ -143,12 +145,16 @@ Result<> ProcessGuard::tell(char word) {
               "See who killed it: journalctl -k", errno);
 }
 
-void ProcessGuard::stand_down() noexcept {
+void ProcessGuard::stand_down() noexcept { part(kBye, 1000); }
+
+void ProcessGuard::hand_over() noexcept { part(kHandOver, 10'000); }
+
+void ProcessGuard::part(char word, int wait_ms) noexcept {
   if (!link_.valid()) return;
-  static_cast<void>(::send(link_.get(), &kBye, 1, MSG_NOSIGNAL | MSG_DONTWAIT));
+  static_cast<void>(::send(link_.get(), &word, 1, MSG_NOSIGNAL | MSG_DONTWAIT));
   // Its end of the link closes when it goes.
   pollfd end{link_.get(), POLLIN, 0};
-  ::poll(&end, 1, 1000);
+  ::poll(&end, 1, wait_ms);
   link_.reset();
   ::waitpid(pid_, nullptr, end.revents != 0 ? 0 : WNOHANG);
 }

@@ -16,12 +16,14 @@ namespace forager::hal {
 enum class GuardCause : std::uint8_t {
   died,    // killed, crashed, or ended without standing the guard down
   silent,  // it hung: no feed() for the time-out; it has been killed
+  asked,   // it lives, and could not make things safe by itself
 };
 
 // A second process that watches the one that moves things, and acts when that one no longer can.
 //
 //   watching --arm()--> armed --silence, death--> acts, ends
 //   watching --death--> ends: nothing had moved yet
+//   armed --hand_over()--> acts, ends
 //   any --stand_down(), destructor--> ends
 //
 // The guard is a fork of the caller with a session of its own: Ctrl-C, SIGTERM and SIGHUP do not reach it. It
@@ -53,11 +55,16 @@ class ProcessGuard {
   // microseconds, for at most a second.
   void stand_down() noexcept;
 
+  // The caller could not make everything safe: the guard is to do it, as if the caller had died. What the
+  // caller holds it must have let go before. Waits for the guard's end, for at most ten seconds.
+  void hand_over() noexcept;
+
   [[nodiscard]] pid_t pid() const { return pid_; }
 
  private:
   ProcessGuard(FileDescriptor link, pid_t pid) : link_(std::move(link)), pid_(pid) {}
   [[nodiscard]] Result<> tell(char word);
+  void part(char word, int wait_ms) noexcept;
 
   FileDescriptor link_;
   pid_t pid_;

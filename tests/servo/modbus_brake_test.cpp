@@ -97,6 +97,7 @@ TEST_F(ModbusBrakeTest, RefusesWhatCannotBe) {
   EXPECT_FALSE(ModbusBrake::create(bus_, {.slew_per_s = 0.0}));
   EXPECT_FALSE(ModbusBrake::create(bus_, {.slew_per_s = INFINITY}));
   EXPECT_FALSE(ModbusBrake::create(bus_, {.locked_value = 70000.0}));
+  EXPECT_FALSE(ModbusBrake::create(bus_, {.open_value = 0.0, .locked_value = 0.4}));  // one number in a u16
   EXPECT_FALSE(ModbusBrake::create(bus_, {.target = {.table = RegisterTable::input}}));
 }
 

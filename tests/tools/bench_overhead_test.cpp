@@ -2,9 +2,11 @@
 // test.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <map>
 #include <string>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
 #include "tests/tools/fake_machine.hpp"
 
@@ -49,10 +51,13 @@ TEST(BenchOverhead, MeasuresWhatNeedsNoHardwareAndSaysWhatTheRestNeeds) {
 
 TEST(BenchOverhead, ALineIsToggledBothWaysAndEndsInactive) {
   if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  const test::ScratchFolder folder;
+  std::filesystem::create_directory(folder.file("levels"));
   const ProgramResult result = run_program(
       {"bench", "overhead", "--seconds", "0.05", "--json", "--gpio", "pinctrl-bcm2711/GPIO17", "--arm"},
-      FakeMachine{}.options());
+      FakeMachine{.root = folder.path()}.options());
   ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(folder.read("levels/GPIO17"), "0");
   auto row = rows_of(result)["GPIO set"];
   expect_figures(row);
   EXPECT_EQ(row["ours"], "DigitalOut::set");

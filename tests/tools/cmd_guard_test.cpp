@@ -207,6 +207,20 @@ TEST_F(Guarded, ALineIsInactiveWhenTheProgramIsKilled) {
       "forager gpio died", [&] { return level() == "0"; }, [&] { return level() == "1"; });
 }
 
+TEST_F(Guarded, ATestedPinIsInactiveWhenTheProgramIsKilled) {
+  if (!built_with("libgpiod")) GTEST_SKIP() << "built without libgpiod";
+  std::filesystem::create_directory(tree_.folder().file("levels"));
+  const std::string board =
+      tree_.folder().write("pins.toml", "[board]\nname = \"bench\"\nguard_timeout_ms = 10000\n");
+  const FakeMachine machine{.root = tree_.folder().path()};
+  const auto level = [&] { return tree_.folder().read("levels/GPIO17"); };
+  expect_safe_in_time(
+      {"selftest", "--out", "gpiochip0/17", "--in", "gpiochip0/27", "--count", "1000000", "--arm", "--board",
+       board},
+      machine.options(), "forager selftest died", [&] { return level() == "1"; },
+      [&] { return level() == "0"; });
+}
+
 TEST_F(Guarded, AHungBenchCommandIsKilledAndItsServoSafe) {
   const std::string board = tree_.folder().write(
       "servo.toml",

@@ -48,7 +48,7 @@ std::vector<std::string> commands_in(const std::string& help) {
 
 std::set<std::string> options_in(const std::string& help) {
   std::set<std::string> options;
-  const std::regex option("--[a-z][a-z-]*");
+  const std::regex option("--[a-z][a-z0-9-]*");
   for (const std::string& line : lines_in(help)) {
     if (!line.starts_with("  -")) continue;
     const std::string names = line.substr(0, line.find("  ", 3));
@@ -120,8 +120,8 @@ TEST(ManualPage, CanBeWrittenToAFile) {
 
 // What bash offers after these words, the last of which is being typed.
 std::vector<std::string> offered(const std::vector<std::string>& words) {
-  std::string script =
-      "source " + test::source_path("tools/forager.bash-completion") + " && COMP_WORDS=(" + test::program();
+  std::string script = "cd " + test::source_path(".") +
+                       " && source tools/forager.bash-completion && COMP_WORDS=(" + test::program();
   for (const std::string& word : words) script += " '" + word + "'";
   script += ") && COMP_CWORD=" + std::to_string(words.size()) +
             " && _forager && printf '%s\\n' \"${COMPREPLY[@]}\"";

@@ -35,7 +35,11 @@ class GuardedProcess {
       ::close(ends[0]);
       const int pipe = ends[1];
       const auto guard = ProcessGuard::start(timeout, [pipe](GuardCause cause) {
-        static_cast<void>(!::write(pipe, cause == GuardCause::died ? "d" : "s", 1));
+        static_cast<void>(!::write(pipe,
+                                   cause == GuardCause::died    ? "d"
+                                   : cause == GuardCause::asked ? "k"
+                                                                : "s",
+                                   1));
       });
       if (guard) life(**guard, pipe);
       ::_exit(guard ? 0 : 1);  // no destructor: the guard is not stood down
@@ -136,6 +140,17 @@ TEST(ProcessGuard, StoodDownItGoesHome) {
 }
 
 // The terminal's Ctrl-C and the service manager's SIGTERM go to every process of a group.
+TEST(ProcessGuard, AskedToItActsWhileTheProcessLivesAndOnlyWhatWasArmed) {
+  for (const bool armed : {true, false}) {
+    GuardedProcess process(kNever, [armed](ProcessGuard& guard, int pipe) {
+      if (armed) static_cast<void>(guard.arm());
+      guard.hand_over();  // waits until it is done
+      say(pipe, 'e');
+    });
+    EXPECT_EQ(process.read(9), armed ? "ke" : "e");
+  }
+}
+
 TEST(ProcessGuard, SignalsThatEndProgramsDoNotEndIt) {
   GuardedProcess process(kNever, [](ProcessGuard& guard, int pipe) {
     const bool armed = guard.arm().has_value();
