@@ -40,8 +40,8 @@ void AdvanNetListener::update(hal::Instant now) {
   if (link_.phase == LinkPhase::opening) connect();
   if (link_.phase == LinkPhase::open) take_in();
   if (link_.phase == LinkPhase::open && now - heard_ > config_.stream_timeout)
-    lose(fmt::format("{} has been silent for {:g} s, without even keep-alives", events_->name(),
-                     hal::to_seconds(now - heard_)));
+    lose(fmt::format("{}: {} for {:.1f} s, not even a keep-alive", events_->name(),
+                     link_.last_heard > heard_ ? "only noise" : "nothing", hal::to_seconds(now - heard_)));
 }
 
 void AdvanNetListener::halt() noexcept {

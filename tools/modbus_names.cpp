@@ -165,7 +165,7 @@ void add_modbus_names(CLI::App& modbus, int& exit_code) {
                            NamesTask::set, written, exit_code);
   written->registers.emplace_back();
   sub->add_option("register", written->registers.front(), "Name of the register")->required();
-  sub->add_option("value", written->value, "In its unit")->required()->check(NumberBetween(-1e9, 1e9));
+  sub->add_option("value", written->value, "In its unit")->required()->check(NumberBetween(-3.5e38, 3.5e38));
   sub->add_flag("--arm", written->arm, "Yes, the device may act on it");
 }
 

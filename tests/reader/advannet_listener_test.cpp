@@ -66,13 +66,23 @@ TEST_F(AdvanNetListenerTest, SendsNotOneByte) {
   EXPECT_EQ(listener_.link().phase, LinkPhase::open);  // keep-alives are enough
 }
 
+TEST_F(AdvanNetListenerTest, AServiceThatSpeaksSomethingElseIsToldApartFromSilence) {
+  listener_.start(now_);
+  keep_alives_ = false;
+  run(1s);
+  send("HTTP/1.1 400 Bad Request\r\n");
+  run(11s);
+  EXPECT_EQ(listener_.link().losses, 1U);
+  EXPECT_THAT(journal_.text(), HasSubstr("only noise for"));
+}
+
 TEST_F(AdvanNetListenerTest, SilenceIsALossAndItConnectsAgain) {
   listener_.start(now_);
   run(1s);
   keep_alives_ = false;
   run(11s);
   EXPECT_EQ(listener_.link().losses, 1U);
-  EXPECT_THAT(journal_.text(), HasSubstr("silent"));
+  EXPECT_THAT(journal_.text(), HasSubstr("nothing for"));
   keep_alives_ = true;
   run(7s);
   EXPECT_TRUE(listener_.link().reading());
