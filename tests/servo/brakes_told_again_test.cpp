@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr ModbusBrakeConfig kActuator{
+const ModbusBrakeConfig kActuator{
     .unit = 3, .target = {.address = 40}, .open_value = 900, .locked_value = 100, .enable_coil = 1};
 
 class BrakesToldAgain : public testing::Test {
