@@ -9,6 +9,7 @@
 
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/bench_command.hpp"
+#include "tests/tools/fake_machine.hpp"
 #include "tests/tools/program.hpp"
 #include "tests/tools/socket_rig.hpp"
 
