@@ -37,7 +37,7 @@ try() {
 /h$build/tests/kernel_tests --gtest_color=no \
   --gtest_filter='Gpio*:*Digital*:*Pwm*:I2c*:-*InVirtualTime*:*NobodyMay*:*WithoutTheRight*:*WhatCannotBeOpened*' ||
   failed=1
-try Program.SaysItsVersion forager /h$build/tools/forager --version
+try Program.NamesItsCommands doctor /h$build/tools/forager --help
 try Program.ReadsThePinsOfTheMachine 9030000.pl061 /h$build/tools/forager gpio list
 try Program.ExaminesItself gpio /h$build/tools/forager doctor
 exit \$failed
